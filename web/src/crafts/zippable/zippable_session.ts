@@ -25,6 +25,9 @@ import type { ShadedMesh } from '../../shared/panels/shaded_mesh';
 import { Bending } from './ribbon/bending';
 import type { Design } from './design';
 import { readDesign } from './design';
+import type { RibbonPieces } from './ribbon/cut_ribbon';
+import { cutByParts } from './ribbon/cut_ribbon';
+import { PartBorders } from './ribbon/part_borders';
 import type { PartDistortion } from './ribbon/part_map';
 import { distortionOfParts, partsOfTriangles, VertexGrid } from './ribbon/part_map';
 import type { ZippableDocument } from './zippable_document';
@@ -35,6 +38,8 @@ export interface DividedModel {
   readonly bytes: Uint8Array;
   readonly mesh: ShadedMesh;
   readonly grid: VertexGrid;
+  /** Made when it is first asked for. */
+  readonly borders: () => PartBorders;
   /** By part. */
   readonly distortion: readonly PartDistortion[];
 }
@@ -46,6 +51,8 @@ export interface Zippable extends ShownWork {
   readonly course: readonly Float32Array[];
   /** By triangle of the ribbon. */
   readonly partOfTriangle: Int32Array;
+  /** Cut along the parts' borders; made when it is first asked for. */
+  readonly pieces: () => RibbonPieces;
   /** Made when it is first asked for. */
   readonly bending: () => Bending;
 }
@@ -189,9 +196,11 @@ export class ZippableSession extends RoomSession<ZippableDocument> {
     const { ribbon } = made;
     const segment = model.mesh.attributes['segment'] ?? new Float32Array(0);
     const partOfTriangle = partsOfTriangles(ribbon, segment, model.grid);
+    let pieces: RibbonPieces | null = null;
+    const cut = () => (pieces ??= cutByParts(ribbon, partOfTriangle, model.borders()));
     let bent: Bending | null = null;
     const bending = () => (bent ??= new Bending(ribbon));
-    return { design: made, model, course, partOfTriangle, bending, report };
+    return { design: made, model, course, partOfTriangle, pieces: cut, bending, report };
   }
 
   /** What a moving slider does not wait for: how far the previewed ribbon is from the model, once it rests. */
@@ -227,7 +236,10 @@ export class ZippableSession extends RoomSession<ZippableDocument> {
     const known = this.#divided;
     if (known && sameBytes(known.bytes, bytes)) return known;
     const mesh = await readMesh(bytes);
-    const model = { bytes, mesh, grid: new VertexGrid(mesh.positions), distortion: distortionOfParts(mesh) };
+    const grid = new VertexGrid(mesh.positions);
+    let found: PartBorders | null = null;
+    const borders = () => (found ??= new PartBorders(mesh, grid));
+    const model = { bytes, mesh, grid, borders, distortion: distortionOfParts(mesh) };
     this.#divided = model;
     return model;
   }

@@ -6,6 +6,7 @@ import type { Curve, MeshData, Vec3, Viewport } from '../../../view';
 import { originalData, shadingOf } from '../../../shared/panels/shaded_mesh';
 import { figure, vectorOf } from '../../../shared/session/report';
 import { boundaryEdges } from '../design';
+import { withCutPoints } from '../ribbon/cut_ribbon';
 import { drawnLines, tool } from './draw_actions';
 import { positionOf } from '../ribbon/ribbon_places';
 import { frameAt } from '../simulated';
@@ -39,7 +40,8 @@ function coloursOf(painted: ArrayLike<number>, paints: readonly Paint[]): Float3
   });
 }
 
-/** The ribbon with vertices apart where its colours change, and the vertex of the ribbon that each of them is. */
+/** The ribbon cut along the parts' borders, with vertices apart where its colours change; which vertex of the ribbon, or
+ *  further point of the cut, each of them is. */
 interface ColouredRibbon {
   readonly indices: Uint32Array;
   readonly source: Uint32Array;
@@ -48,14 +50,16 @@ interface ColouredRibbon {
   readonly paints: readonly Paint[];
 }
 
-function apartByPaint({ design, partOfTriangle }: Zippable): ColouredRibbon {
-  const { triangles, sample } = design.ribbon;
-  const { ofTriangle, paints } = paintedRibbon(design, partOfTriangle);
+function apartByPaint(shown: Zippable): ColouredRibbon {
+  const pieces = shown.pieces();
+  const { triangles } = pieces;
+  const vertices = shown.design.ribbon.sample.length + pieces.corners.length / 3;
+  const { ofPiece, paints } = paintedRibbon(shown.design, pieces);
   const numbers = new Map<number, number>();
   const [source, paint]: [number[], number[]] = [[], []];
   const indices = triangles.map((vertex, at) => {
-    const mine = ofTriangle[Math.floor(at / 3)] ?? 0;
-    const key = mine * sample.length + vertex;
+    const mine = ofPiece[Math.floor(at / 3)] ?? 0;
+    const key = mine * vertices + vertex;
     const known = numbers.get(key);
     if (known !== undefined) return known;
     numbers.set(key, source.length);
@@ -149,13 +153,14 @@ export function keepDrawn(viewport: Viewport, session: ZippableSession): () => v
     if (view.value !== 'ribbon' && shown.kind === 'preview') return;
     const style = styleNow();
     const positions = positionsNow(shown);
+    const cut = (values: Float32Array) => withCutPoints(values, 3, shown.pieces());
     if (coloured?.of !== shown || coloured.style !== style) {
       const ribbon = apartByPaint(shown);
       const { indices, source, paint, paints } = ribbon;
       const colours = coloursOf(paint, paints);
-      viewport.setRelief({ positions: gathered(positions, source), indices, colours }, null);
+      viewport.setRelief({ positions: gathered(cut(positions), source), indices, colours }, null);
       coloured = { of: shown, ribbon, style };
-    } else viewport.updateRelief(gathered(positions, coloured.ribbon.source));
+    } else viewport.updateRelief(gathered(cut(positions), coloured.ribbon.source));
   };
 
   const drawCurves = (): void => {

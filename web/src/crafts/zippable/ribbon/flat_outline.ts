@@ -38,7 +38,11 @@ export function fitFlat(flat: Float32Array, width: number, height: number): Flat
 const number = (value: number | undefined): string => String(Math.round(100 * (value ?? 0)) / 100);
 
 /** One path a part; empty for a part that no triangle lies on. */
-export function partPaths({ flat, triangles }: Ribbon, partOf: Int32Array, count: number): string[] {
+export function partPaths(
+  { flat, triangles }: Pick<Ribbon, 'flat' | 'triangles'>,
+  partOf: Int32Array,
+  count: number,
+): string[] {
   const paths: string[][] = Array.from({ length: count }, () => []);
   partOf.forEach((part, t) => {
     const corners = [0, 1, 2].map((k) => triangles[3 * t + k] ?? 0);

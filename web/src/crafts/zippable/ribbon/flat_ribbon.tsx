@@ -5,6 +5,7 @@ import { useEffect, useMemo, useRef } from 'preact/hooks';
 import { formatMetres, Segmented } from '../../../ui';
 import { figure } from '../../../shared/session/report';
 import { boundaryEdges, partName } from '../design';
+import { withCutPoints } from './cut_ribbon';
 import type { FlatFit } from './flat_outline';
 import { edgePath, fitFlat, partLabels, partPaths, scaleBar } from './flat_outline';
 import { fabricName, fabricToken, paintedRibbon } from './paint';
@@ -182,11 +183,13 @@ const lineWidth = ({ report }: Zippable, pxPerMm: number): number =>
   Math.min(1.5, Math.max(0.3, 0.12 * pxPerMm * (figure(report, 'ribbon_width_mean_mm') ?? 20)));
 
 function Shapes({ shown, chosen, line }: ShapesProps) {
-  const { design, partOfTriangle } = shown;
+  const { design } = shown;
   const shapes = useMemo(() => {
     const { flat } = design.ribbon;
-    const { ofTriangle, paints } = paintedRibbon(design, partOfTriangle);
-    const paths = partPaths(design.ribbon, ofTriangle, paints.length);
+    const pieces = shown.pieces();
+    const { ofPiece, paints } = paintedRibbon(design, pieces);
+    const cut = { flat: withCutPoints(flat, 2, pieces), triangles: pieces.triangles };
+    const paths = partPaths(cut, ofPiece, paints.length);
     return {
       painted: paints.map((paint, i) => ({ ...paint, path: paths[i] ?? '' })),
       zipper: edgePath(flat, boundaryEdges(design, 'zipper')),

@@ -6,12 +6,15 @@ import { woundStrip } from './test_ribbon';
 
 const read = (text: string) => readDesign(new TextEncoder().encode(text));
 
+/** A piece for each triangle. */
+const whole = (part: Int32Array) => ({ part, of: Uint32Array.from(part.keys()) });
+
 describe('the ribbon’s paint', () => {
   it('is each part’s own colour with one fabric', () => {
     const design = read(woundStrip(4));
     expect(design.fabric).toBeNull();
-    const { ofTriangle, paints } = paintedRibbon(design, new Int32Array(8));
-    expect([...ofTriangle]).toEqual(Array(8).fill(0));
+    const { ofPiece, paints } = paintedRibbon(design, whole(new Int32Array(8)));
+    expect([...ofPiece]).toEqual(Array(8).fill(0));
     expect(paints.map(({ part }) => part)).toEqual([0]);
   });
 
@@ -20,8 +23,8 @@ describe('the ribbon’s paint', () => {
     file.ribbon.fabric = [0, 0, 0, 0, 1, 1, 1, 1];
     file.parts.push(file.parts[0]);
     const design = read(JSON.stringify(file));
-    const { ofTriangle, paints } = paintedRibbon(design, Int32Array.from([0, 0, 1, 1, 0, 0, 1, 1]));
-    const of = (t: number) => paints[ofTriangle[t] ?? -1];
+    const { ofPiece, paints } = paintedRibbon(design, whole(Int32Array.from([0, 0, 1, 1, 0, 0, 1, 1])));
+    const of = (t: number) => paints[ofPiece[t] ?? -1];
     expect([of(0)?.part, of(2)?.part, of(4)?.part, of(6)?.part]).toEqual([0, 1, 0, 1]);
     expect(of(0)?.token).toBe(of(2)?.token);
     expect(of(4)?.token).toBe(of(6)?.token);

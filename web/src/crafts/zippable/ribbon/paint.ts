@@ -2,6 +2,7 @@
 // What the ribbon is painted in: each part in its own colour, or both fabrics in theirs.
 import type { Design } from '../design';
 import { partToken } from '../views';
+import type { RibbonPieces } from './cut_ribbon';
 
 /** Triangles that are painted alike. */
 export interface Paint {
@@ -11,7 +12,8 @@ export interface Paint {
 }
 
 export interface Painted {
-  readonly ofTriangle: Int32Array;
+  /** By piece of the ribbon. */
+  readonly ofPiece: Int32Array;
   readonly paints: readonly Paint[];
 }
 
@@ -23,10 +25,13 @@ export const fabricToken = (fabric: number): string => partToken(fabric);
 export const paintsOfParts = (count: number): Paint[] =>
   Array.from({ length: count }, (_, part) => ({ part, token: partToken(part) }));
 
-export function paintedRibbon({ parts, fabric }: Design, partOfTriangle: Int32Array): Painted {
-  if (fabric === null) return { ofTriangle: partOfTriangle, paints: paintsOfParts(parts.length) };
+export function paintedRibbon(
+  { parts, fabric }: Design,
+  { part, of }: Pick<RibbonPieces, 'part' | 'of'>,
+): Painted {
+  if (fabric === null) return { ofPiece: part, paints: paintsOfParts(parts.length) };
   return {
-    ofTriangle: partOfTriangle.map((part, t) => fabrics * part + (fabric[t] ?? 0)),
+    ofPiece: part.map((own, i) => fabrics * own + (fabric[of[i] ?? 0] ?? 0)),
     paints: Array.from({ length: fabrics * parts.length }, (_, i) => ({
       part: Math.floor(i / fabrics),
       token: fabricToken(i % fabrics),

@@ -72,7 +72,6 @@ export class SectionCaps {
   /** What to draw, one step after the other, once the stencil is cleared. Open meshes have no inside: no cap. */
   steps(subject: Subject, hasPlate: boolean): THREE.Object3D[][] {
     const solid = subject.surfaces.filter((surface, i) => {
-      if (surface.main.material.transparent) return false;
       // Front and body of a plate are closed together.
       if (hasPlate && i > 0) return true;
       return surface.closed;

@@ -79,22 +79,21 @@ export function plateBody(frame: PlateFrame): MeshData | null {
   };
 }
 
-/** A square of ground under the lowest point along `up`, `reach` radii wide. */
-export function groundSquare(
+/** A square of ground under the lowest point along `up`, `reach` radii to each side. */
+export function groundFrame(
   centre: Vec3,
   radius: number,
   lowest: number,
   up: Vec3,
   reach: number,
-): MeshData {
+): PlateFrame {
   const axes = viewerAxes(scale(up, -1), Math.abs(up[1]) < 0.9 ? [0, 1, 0] : [0, 0, -1]);
   const level = lowest - (centre[0] * up[0] + centre[1] * up[1] + centre[2] * up[2]);
-  const frame: PlateFrame = {
+  return {
     ...axes,
     centre: along(centre, up, level),
     halfWidth: reach * radius,
     halfHeight: reach * radius,
     thickness: 0,
   };
-  return plateFront(frame);
 }

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What belongs to the original or to the relief, and what is put beside the mesh itself.
 import type { Fixture, MeshData, Plate, Vec3, Viewpoint } from '../api';
-import { groundSquare, plateBody, plateFrame, plateFront } from '../overlay/plate';
+import type { GroundShadow } from '../overlay/ground_shadow';
+import { plateBody, plateFrame, plateFront } from '../overlay/plate';
 import { PlateShadow } from '../overlay/plate_shadow';
-import { groundFragment } from './screen_shaders';
 import type { Subject } from './subject';
 import type { Surface, SurfaceOptions } from './surface';
-import { dot } from '../vector';
 
 export type PartName = 'original' | 'relief';
 
@@ -22,6 +21,7 @@ export interface Part {
   opacity: number;
   plate: Plate | null;
   plateShadow: PlateShadow | null;
+  groundShadow: GroundShadow | null;
 }
 
 export type MakeSurface = (mesh: MeshData, options: SurfaceOptions) => Surface;
@@ -62,30 +62,4 @@ export function addFixtures(
     if (shadow) part.plateShadow ??= new PlateShadow(plateFrame(shadow, viewpoint), origin);
     return { id, surface: made };
   });
-}
-
-/** A square below the object that receives its shadow. */
-export function addGround(part: Part, mesh: Surface, up: Vec3, origin: Vec3, surface: MakeSurface): void {
-  const { points, centre, radius } = mesh.support;
-  let lowest = Infinity;
-  for (let i = 0; i < points.length; i += 3) {
-    lowest = Math.min(
-      lowest,
-      dot(up, [points[i] as number, points[i + 1] as number, points[i + 2] as number]),
-    );
-  }
-  const square = groundSquare(centre as Vec3, radius, lowest - 1e-3 * radius, up, 2.4);
-  const positions = Float64Array.from(square.positions, (x, i) => x + (origin[i % 3] as number));
-  const ground = surface(
-    { ...square, positions },
-    {
-      albedo: PLATE,
-      picture: { width: 384, height: 384 },
-      blur: 0.16,
-      fragment: groundFragment,
-      transparent: true,
-    },
-  );
-  ground.main.material.uniforms['uStrength'] = { value: 0.8 };
-  part.extra.push(ground);
 }

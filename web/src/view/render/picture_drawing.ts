@@ -109,11 +109,12 @@ export class PictureDrawing {
     const cut = this.uniforms.cutTest() !== null;
     for (const surface of part.subject.surfaces) {
       surface.setCut(cut);
-      if (surface.main.material.transparent && !picture.ground) continue;
       if (surface.within && part.opacity === 1) continue;
       if (surface.opacity === 1) objects.push(surface.main);
     }
-    const { plateShadow } = part;
+    const { groundShadow, plateShadow } = part;
+    if (groundShadow && picture.ground && groundShadow.seenFrom(picture.camera))
+      objects.push(groundShadow.mesh);
     if (plateShadow && picture.plateShadow && !cut && plateShadow.seenFrom(picture.camera)) {
       plateShadow.aim(picture.towardsLight, this.dark);
       objects.push(plateShadow.mesh);
@@ -166,7 +167,7 @@ export class PictureDrawing {
     const { centre, radius } = subject.support;
     const c = viewCoordinates(camera, add(centre, origin))[2];
     // The ground reaches further than its object.
-    const reach = (subject.groundUp ? 4 : 1.6) * radius;
+    const reach = (subject.ground ? 4 : 1.6) * radius;
     const m = clipMatrix(camera, screen, origin, c - reach, c + reach);
     // Jitter in pixels: x' = x + 2 jitter / width * w.
     for (let k = 0; k < 4; ++k) {

@@ -14,6 +14,8 @@ export interface Quality {
   readonly skyDirections: number;
   readonly skySize: number;
   readonly skyTriangles: number;
+  /** Texels along a side of the ground's shadow. */
+  readonly groundSize: number;
   /** Directions baked in one piece of work. */
   readonly skyStep: number;
   /** Pictures averaged for a still view, for a small picture, for a saved one. */
@@ -41,6 +43,7 @@ export const FULL: Quality = {
   skyDirections: 80,
   skySize: 1024,
   skyTriangles: Infinity,
+  groundSize: 384,
   skyStep: 20,
   stillSamples: 40,
   smallSamples: 14,
@@ -60,6 +63,7 @@ const SPARING: Quality = {
   skyDirections: 20,
   skySize: 512,
   skyTriangles: 200_000,
+  groundSize: 192,
   skyStep: 1,
   stillSamples: 4,
   smallSamples: 2,

@@ -74,18 +74,3 @@ void main() {
   outColour = vec4(vec3(0.085, 0.070, 0.047) * a, a);
 }
 `;
-
-/** Ground under an object: darkens the bench by what of the sky it hides, fading outwards. */
-export const groundFragment = /* glsl */ `${HEAD}
-in vec2 vUv;
-uniform sampler2D uOcclusion;
-uniform float uStrength;
-out vec4 outColour;
-void main() {
-  vec2 sums = texture(uOcclusion, vUv).rg;
-  float open = sums.y > 0.0 ? clamp(sums.x / sums.y, 0.0, 1.0) : 1.0;
-  float fade = 1.0 - smoothstep(0.6, 1.0, 2.0 * length(vUv - 0.5));
-  float a = uStrength * (1.0 - open) * fade;
-  outColour = vec4(vec3(0.085, 0.070, 0.047) * a, a);
-}
-`;

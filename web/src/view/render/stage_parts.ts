@@ -4,15 +4,8 @@
 import type * as THREE from 'three';
 import type { Fixture, MeshData, Plate, Vec3, Viewpoint } from '../api';
 import { Colouring } from '../mesh/colouring';
-import {
-  type MakeSurface,
-  type Part,
-  type PartName,
-  PLASTER,
-  addFixtures,
-  addGround,
-  addPlate,
-} from './part';
+import { type MakeSurface, type Part, type PartName, PLASTER, addFixtures, addPlate } from './part';
+import { GroundShadow } from '../overlay/ground_shadow';
 import type { PictureUniforms } from './picture';
 import type { Quality } from './quality';
 import { DepthView, SkyScratch, Subject, newBakeUniforms } from './subject';
@@ -43,6 +36,7 @@ export class StageParts {
       opacity: 1,
       plate: null,
       plateShadow: null,
+      groundShadow: null,
     });
     this.parts = { original: part(), relief: part() };
     this.colouring = new Colouring(() =>
@@ -62,7 +56,8 @@ export class StageParts {
     part.subject.dispose();
     part.subject = new Subject(this.bakeUniforms, this.quality);
     part.plateShadow?.dispose();
-    part.plateShadow = null;
+    part.groundShadow?.dispose();
+    part.plateShadow = part.groundShadow = null;
     part.plate = plate;
     part.extra = [];
     part.mesh = mesh ? this.surface(part, mesh, { albedo: PLASTER }) : null;
@@ -72,8 +67,9 @@ export class StageParts {
     const beside = this.fixtures.filter(({ parts }) => parts.includes(name));
     if (mesh) addFixtures(part, beside, viewpoint, origin, surface);
     if (part.mesh) part.mesh.setOpacity(part.opacity);
-    if (ground && part.mesh) addGround(part, part.mesh, ground, origin, surface);
-    part.subject.groundUp = ground;
+    if (ground && part.mesh)
+      part.groundShadow = new GroundShadow(part.mesh.support, ground, origin, this.quality.groundSize);
+    part.subject.ground = part.groundShadow;
     const standing = part.fixtures.map((fixture) => fixture.surface);
     part.subject.surfaces = [...(part.mesh ? [part.mesh] : []), ...part.extra, ...standing];
     part.subject.changed();
@@ -146,6 +142,7 @@ export class StageParts {
     for (const part of Object.values(this.parts)) {
       part.subject.dispose();
       part.plateShadow?.dispose();
+      part.groundShadow?.dispose();
     }
     this.colouring.dispose();
     this.sky.dispose();

@@ -3,6 +3,7 @@
 // how much of the sky each vertex sees (ambient occlusion, by shadow maps from many directions).
 import * as THREE from 'three';
 import type { Vec3 } from '../api';
+import type { GroundShadow } from '../overlay/ground_shadow';
 import type { Quality } from './quality';
 import { type Support, sphereDirections, supportOf } from '../mesh/support';
 import type { Surface, Uniforms } from './surface';
@@ -65,8 +66,8 @@ export class Subject {
     uShadowRadius: { value: new THREE.Vector2() },
     uShadowOn: { value: 0 },
   };
-  /** Up from the ground below the object, where there is one. The ground receives shadows and throws none. */
-  groundUp: Vec3 | null = null;
+  /** Below the object, where there is one. It receives the object's shadow and throws none. */
+  ground: GroundShadow | null = null;
   /** Everything drawn, in order. */
   surfaces: Surface[] = [];
   support: Support = supportOf(new Float32Array(0));
@@ -89,9 +90,9 @@ export class Subject {
 
   /** Shape or parts changed: bounds anew; shadow and sky follow when next drawn or at rest. */
   changed(): void {
-    const solid = this.surfaces.filter((s) => !s.main.material.transparent);
-    this.support = jointSupport(solid);
-    this.framing = solid.every((s) => s.framed) ? this.support : jointSupport(solid.filter((s) => s.framed));
+    this.support = jointSupport(this.surfaces);
+    const framed = this.surfaces.filter((s) => s.framed);
+    this.framing = framed.length === this.surfaces.length ? this.support : jointSupport(framed);
     this.shadowKey = '';
     this.skyNext = 0;
     this.skyDone = false;
@@ -100,9 +101,7 @@ export class Subject {
   /** What is inside an opaque mesh lies in its shadow anyway; what is seen through throws none. */
   private casters(): Surface[] {
     const open = this.surfaces.some((s) => s.opacity < 1);
-    return this.surfaces.filter(
-      (s) => !s.main.material.transparent && s.opacity === 1 && (open || !s.within),
-    );
+    return this.surfaces.filter((s) => s.opacity === 1 && (open || !s.within));
   }
 
   get triangleCount(): number {
@@ -185,7 +184,12 @@ export class Subject {
   }
 
   get bakePending(): boolean {
-    return this.surfaces.length > 0 && !this.skyDone && this.triangleCount <= this.quality.skyTriangles;
+    if (this.surfaces.length === 0 || this.skyDone) return false;
+    return this.ground !== null || this.worthSky;
+  }
+
+  private get worthSky(): boolean {
+    return this.triangleCount <= this.quality.skyTriangles;
   }
 
   get baked(): boolean {
@@ -196,6 +200,8 @@ export class Subject {
   bake(renderer: THREE.WebGLRenderer, view: DepthView, scratch: SkyScratch, steps: number): boolean {
     if (!this.bakePending) return false;
     if (this.skyNext === 0) {
+      this.ground?.prepare(renderer, this.casters(), this.bakeUniforms['uClip']?.value as THREE.Matrix4);
+      if (!this.worthSky) return (this.skyDone = true);
       for (const surface of this.surfaces) {
         renderer.setRenderTarget(surface.beginBake());
         renderer.clear(true, false, false);
@@ -215,7 +221,7 @@ export class Subject {
       const mm = this.aim(towards, skySize, lookup);
       (this.bakeUniforms['uDirection']?.value as THREE.Vector3).set(...towards);
       (this.bakeUniforms['uSeen'] as THREE.IUniform).value =
-        this.groundUp && dot(towards, this.groundUp) < 0 ? GROUND_BOUNCE : 1;
+        this.ground && dot(towards, this.ground.up) < 0 ? GROUND_BOUNCE : 1;
       this.drawDepth(renderer, view, target);
       (this.bakeUniforms['uShadow'] as THREE.IUniform).value = target.depthTexture;
       (this.bakeUniforms['uShadowOffset'] as THREE.IUniform).value = 2.5 * mm;
@@ -244,6 +250,7 @@ export class Subject {
     this.uniform('uShadowOn').value = 0;
     this.skyNext = 0;
     this.skyDone = false;
+    this.ground?.forgetGpu();
     for (const surface of this.surfaces) surface.forgetBake();
   }
 

@@ -31,12 +31,8 @@ export interface SurfaceOptions {
   albedo: Vec3;
   /** Flat quads are baked as pictures of this many texels instead of per vertex; needs uvs. */
   picture?: { width: number; height: number };
-  /** Blur of the baked sky, as a share of its depth maps: far shadows need more. */
-  blur?: number;
   /** Look-ups into the key light's depth map per pixel. */
   shadowTaps?: number;
-  fragment?: string;
-  transparent?: boolean;
 }
 
 export function still<T extends THREE.Object3D>(object: T): T {
@@ -175,14 +171,12 @@ export class Surface {
     const material = new THREE.RawShaderMaterial({
       glslVersion: THREE.GLSL3,
       vertexShader: surfaceVertex,
-      fragmentShader: options.fragment ?? surfaceFragment,
+      fragmentShader: surfaceFragment,
       defines,
       uniforms: { ...shared.picture, ...shared.subject, ...this.uniforms },
       // The far side of a closed mesh only shows as specks along outlines.
       side: this.solid ? THREE.FrontSide : THREE.DoubleSide,
-      transparent: options.transparent ?? false,
-      depthWrite: !(options.transparent ?? false),
-      blending: options.transparent ? THREE.CustomBlending : THREE.NoBlending,
+      blending: THREE.NoBlending,
       blendSrc: THREE.OneFactor,
       blendDst: THREE.OneMinusSrcAlphaFactor,
     });
@@ -202,12 +196,12 @@ export class Surface {
 
     const bakeMaterial = new THREE.RawShaderMaterial({
       glslVersion: THREE.GLSL3,
-      defines: { BAKE_TAPS: options.blur ? 16 : 4 },
+      defines: { BAKE_TAPS: 4 },
       vertexShader: options.picture ? bakeQuadVertex : bakeVertex,
       fragmentShader: options.picture ? bakeQuadFragment : bakeFragment,
       uniforms: {
         ...shared.bake,
-        uBlur: { value: options.blur ?? 0.0012 },
+        uBlur: { value: 0.0012 },
         uOcclusionWidth: this.uniforms['uOcclusionWidth']!,
         uOcclusionHeight: this.uniforms['uOcclusionHeight']!,
       },

@@ -178,6 +178,11 @@ test('a relief goes to a mill: its job, its way in space, its first lines', asyn
   await expect(page.getByRole('img', { name: /^Bed of 300 × 200/ })).toBeVisible();
 
   await page.getByRole('radio', { name: '3D' }).click();
+  // The carved surface is shown first, the paths over it on request.
+  const paths = page.getByRole('switch', { name: 'Show tool paths' });
+  await expect(paths).not.toBeChecked();
+  await paths.click();
+  await expect(paths).toBeChecked();
   const view = page.getByRole('application', { name: 'Tool path' });
   await view.focus();
   await page.keyboard.press('ArrowLeft');

@@ -30,6 +30,7 @@ export interface MachinesPageProps {
 export function MachinesPage({ session, onChooseFile, onLayOutAgain }: MachinesPageProps) {
   const shown = useSignal<'bed' | 'path' | 'console'>('bed');
   const travel = useSignal(false);
+  const paths = useSignal(false);
   useEffect(() => followBridge(session), [session]);
   useMachineKeys(session);
   const { drawing } = session.document.value;
@@ -55,6 +56,15 @@ export function MachinesPage({ session, onChooseFile, onLayOutAgain }: MachinesP
               { value: 'console', label: 'Console' },
             ]}
           />
+          {shown.value === 'path' && plan?.carved ? (
+            <div class="panel travel-switch">
+              <Switch
+                label="Show tool paths"
+                value={paths.value}
+                onChange={(value) => (paths.value = value)}
+              />
+            </div>
+          ) : null}
           {shown.value !== 'console' && plan ? (
             <div class="panel travel-switch">
               <Switch
@@ -68,7 +78,7 @@ export function MachinesPage({ session, onChooseFile, onLayOutAgain }: MachinesP
         {shown.value === 'console' ? (
           <Console session={session} />
         ) : shown.value === 'path' && plan ? (
-          <PathView session={session} showTravel={travel.value} />
+          <PathView session={session} showPaths={paths.value} showTravel={travel.value} />
         ) : (
           <BedView session={session} showTravel={travel.value} />
         )}

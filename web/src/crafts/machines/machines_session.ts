@@ -82,7 +82,13 @@ export class MachinesSession extends RoomSession<MachinesDocument> {
     const model = { sha256: work.file.blob, file_name: work.file_name };
     return { key: work.file.blob, inputs: { model } };
   });
-  readonly wantedOutputs = ['job.gcode', 'job_1_rough.gcode', 'job_2_finish.gcode', 'toolpath.json'];
+  readonly wantedOutputs = [
+    'job.gcode',
+    'job_1_rough.gcode',
+    'job_2_finish.gcode',
+    'toolpath.json',
+    'carved.ply',
+  ];
   readonly asked = computed(() => this.document.value.parameters);
   readonly result = this.unlessLost(
     computed<CraftResult | null>(() => {
@@ -229,7 +235,10 @@ export class MachinesSession extends RoomSession<MachinesDocument> {
     if (work.kind === 'model') {
       const made = this.#madeOf({ mesh: work.file.blob, parameters: request.parameters });
       if (made === null) throw cancelled();
-      return await planOfResult(blobs, request, made);
+      const filled = Object.fromEntries(
+        ['x_mm', 'y_mm', 'stock_over_mm'].map((name) => [name, this.#number(name, 0)]),
+      );
+      return await planOfResult(blobs, request, made, filled);
     }
     return await planOfLaser(this.services.browser, request, this.jobFormat, signal);
   }

@@ -7,7 +7,7 @@ import { toolPathOf, toolPathOfGcode } from '../../machines/toolpath_reader';
 import type { BlobStore } from '../../project/blob_store';
 import type { CraftResult } from '../../shared/session/craft_document';
 import { bytesOf } from '../../shared/session/import_model';
-import { sentences } from '../../shared/session/report';
+import { sentences, vectorOf } from '../../shared/session/report';
 import type { FileWork, Work } from './machines_document';
 import { operationFor } from './machines_document';
 
@@ -27,6 +27,31 @@ export interface Plan {
   /** In the order in which they run; none where it does not fit. */
   readonly jobs: readonly PlannedJob[];
   readonly misfits: readonly string[];
+  /** The surface that a mill leaves; not there for a laser, and for jobs made before it was kept. */
+  readonly carved?: CarvedSurface;
+}
+
+export interface CarvedSurface {
+  /** The PLY's hash. */
+  readonly blob: string;
+  /** From the file's coordinates to those of the tool path. */
+  readonly offset_mm: readonly [number, number, number];
+}
+
+/** What `mill-job` puts below the lowest place, so that the carving is a solid. */
+const carvedPlate_mm = 2;
+
+/** In the file the plate's lower left corner is at zero; in the tool path the stock's top is at height zero. */
+export function carvedOf(
+  { outputs, report }: Pick<CraftResult, 'outputs' | 'report'>,
+  parameters: JsonObject,
+): { readonly carved?: CarvedSurface } {
+  const blob = outputs['carved.ply']?.blob;
+  const depth_mm = vectorOf(report, 'size_mm')?.[2];
+  if (blob === undefined || depth_mm === undefined) return {};
+  const value = (name: string) => Number(parameters[name] ?? 0);
+  const top_mm = carvedPlate_mm + depth_mm + value('stock_over_mm');
+  return { carved: { blob, offset_mm: [value('x_mm'), value('y_mm'), -top_mm] } };
 }
 
 export interface PlanRequest {
@@ -74,8 +99,11 @@ export async function planOfJob(
 export async function planOfResult(
   blobs: BlobStore,
   request: PlanRequest,
-  { outputs, report }: CraftResult,
+  result: CraftResult,
+  /** With defaults filled in. */
+  parameters: JsonObject,
 ): Promise<Plan> {
+  const { outputs, report } = result;
   const toolPath = await toolPathOf(await blobs.read(outputs['toolpath.json']?.blob ?? ''));
   const files = toolPath.stages ?? [{ name: '', file: 'job.gcode' }];
   const jobs = await Promise.all(
@@ -84,5 +112,12 @@ export async function planOfResult(
       return made ? [blobs.read(made.blob).then((bytes) => ({ stage: name, bytes }))] : [];
     }),
   );
-  return { key: keyOf(request), report, toolPath, jobs, misfits: sentences(report, 'misfits') };
+  return {
+    key: keyOf(request),
+    report,
+    toolPath,
+    jobs,
+    misfits: sentences(report, 'misfits'),
+    ...carvedOf(result, parameters),
+  };
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The tool path in space, moved through by the same timeline as the bed.
-import { effect } from '@preact/signals';
+import { effect, useSignal } from '@preact/signals';
 import { useEffect, useRef } from 'preact/hooks';
 import { detailFor } from '../../../machines/path_detail';
 import type { PathDetail, ToolPath } from '../../../machines/toolpath';
@@ -8,8 +8,11 @@ import { partAt, placeAt } from '../../../machines/toolpath';
 import type { Insets, MeshData, Vec3, Viewpoint } from '../../../view';
 import { Viewport } from '../../../view';
 import { narrow } from '../../../shared/panels/narrow';
+import { shadingOf } from '../../../shared/panels/shaded_mesh';
+import { readMesh } from '../../../shared/session/read_mesh';
 import { timeShown } from '../panel/job_bar';
 import type { MachinesSession } from '../machines_session';
+import type { CarvedSurface } from '../make_plan';
 import { blockEdges, blockOf, boardUnder, movedTo, pathCurves, toolMesh } from './path_scene';
 
 /** From the front, a little from the left and from above; z is up. */
@@ -27,10 +30,12 @@ const insets = (): Insets =>
 
 export interface PathViewProps {
   readonly session: MachinesSession;
+  /** Over the carved surface; where there is none they are shown in any case. */
+  readonly showPaths: boolean;
   readonly showTravel: boolean;
 }
 
-export function PathView({ session, showTravel }: PathViewProps) {
+export function PathView({ session, showPaths, showTravel }: PathViewProps) {
   const container = useRef<HTMLDivElement>(null);
   const scene = useRef<PathScene | null>(null);
   const plan = session.plan.value;
@@ -48,7 +53,24 @@ export function PathView({ session, showTravel }: PathViewProps) {
       made.viewport.dispose();
     };
   }, [session]);
-  useEffect(() => scene.current?.show(plan?.toolPath ?? null, showTravel), [session, plan, showTravel]);
+  const carved = useSignal<Carved | null>(null);
+  const surface = plan?.carved ?? null;
+  useEffect(() => {
+    if (surface === null) return undefined;
+    let wanted = true;
+    void carvedMesh(session, surface).then(
+      (mesh) => {
+        if (wanted) carved.value = { of: surface, mesh };
+      },
+      () => undefined, // the tool paths stay
+    );
+    return () => void (wanted = false);
+  }, [session, surface]);
+  const mesh = surface !== null && carved.value?.of === surface ? carved.value.mesh : null;
+  useEffect(
+    () => scene.current?.show(plan?.toolPath ?? null, { carved: mesh, showPaths, showTravel }),
+    [session, plan, mesh, showPaths, showTravel],
+  );
   return (
     <div class="path-view">
       <div ref={container} class="viewport" />
@@ -56,12 +78,31 @@ export function PathView({ session, showTravel }: PathViewProps) {
   );
 }
 
+interface Carved {
+  readonly of: CarvedSurface;
+  readonly mesh: MeshData;
+}
+
+async function carvedMesh(
+  { services }: MachinesSession,
+  { blob, offset_mm }: CarvedSurface,
+): Promise<MeshData> {
+  const mesh = await readMesh(await services.projects.blobs.read(blob));
+  return { positions: movedTo(mesh.positions, offset_mm), indices: mesh.indices, ...shadingOf(mesh) };
+}
+
+interface Shown {
+  readonly carved: MeshData | null;
+  readonly showPaths: boolean;
+  readonly showTravel: boolean;
+}
+
 class PathScene {
   readonly viewport: Viewport;
   readonly #session: MachinesSession;
   #toolPath: ToolPath | null = null;
   #detail: PathDetail | null = null;
-  #showTravel = false;
+  #shown: Shown = { carved: null, showPaths: false, showTravel: false };
   #tool: { readonly mesh: MeshData; readonly layer: string } | null = null;
 
   constructor(container: HTMLElement, session: MachinesSession) {
@@ -79,15 +120,14 @@ class PathScene {
     this.viewport.lookFromViewpoint(false);
   }
 
-  show(toolPath: ToolPath | null, showTravel: boolean): void {
+  show(toolPath: ToolPath | null, shown: Shown): void {
     const block = toolPath && blockOf(toolPath);
     const other = this.#toolPath !== toolPath;
+    const carved = other || this.#shown.carved !== shown.carved;
     this.#toolPath = toolPath;
-    this.#showTravel = showTravel;
-    if (other) {
-      this.#tool = null;
-      this.viewport.setOriginal(block ? boardUnder(block) : null);
-    }
+    this.#shown = shown;
+    if (other) this.#tool = null;
+    if (carved) this.viewport.setOriginal(shown.carved ?? (block ? boardUnder(block) : null));
     this.#detail = this.#wanted();
     this.#draw();
     this.follow(timeShown(this.#session));
@@ -160,9 +200,8 @@ class PathScene {
       return;
     }
     const most = this.viewport.linePieces;
-    this.viewport.setCurves([
-      blockEdges(block),
-      ...pathCurves(toolPath, this.#detail, this.#showTravel, most),
-    ]);
+    const { carved, showPaths, showTravel } = this.#shown;
+    const paths = carved && !showPaths ? [] : pathCurves(toolPath, this.#detail, showTravel, most);
+    this.viewport.setCurves([blockEdges(block), ...paths]);
   }
 }

@@ -3,11 +3,11 @@
 import { HEAD } from './shaders';
 
 /** Heights above the ground in bounding radii, one per layer; what lies between is shared by both. */
-export const LAYER_HEIGHTS = [0.02, 0.14, 0.42, 1] as const;
+const LAYER_HEIGHTS = [0.02, 0.14, 0.42, 1] as const;
 /** Standard deviation of each layer's blur, in radii: an object further up throws a softer shadow. */
 export const LAYER_BLURS = [0.025, 0.07, 0.18, 0.42] as const;
 /** How much of the sky each layer takes from the ground below it. */
-export const LAYER_STRENGTHS = [0.9, 0.62, 0.4, 0.2] as const;
+const LAYER_STRENGTHS = [0.9, 0.62, 0.4, 0.2] as const;
 
 const vec4 = (values: readonly number[]): string => `vec4(${values.map((value) => value.toFixed(6)).join()})`;
 

@@ -11,7 +11,8 @@ const built = existsSync(resolve(web, 'public/wasm/formwright.mjs'));
 export const backend = process.env['FORMWRIGHT_BACKEND'] ?? (built ? 'wasm' : 'mock');
 process.env['FORMWRIGHT_BACKEND'] = backend; // the tests read it too
 
-const port = { mock: 5631, wasm: 5632, native: 5633 }[backend] ?? 5631;
+const port =
+  Number(process.env['FORMWRIGHT_PORT'] ?? 0) || ({ mock: 5631, wasm: 5632, native: 5633 }[backend] ?? 5631);
 const servers: Record<string, { command: string; url: string }> = {
   mock: {
     command: `npx vite build --mode mock --outDir ../e2e/test-results/mock --emptyOutDir && npx vite preview --outDir ../e2e/test-results/mock --port ${port} --strictPort`,

@@ -44,7 +44,13 @@ test('a press, a drag, a key; not moving, scrolling and holding a key', async ({
   await page.keyboard.press('Control+Enter');
   await page.keyboard.press('Shift+Tab');
   await page.keyboard.press('?');
-  expect(done(counter)).toEqual(['press: Mirror', 'key: ArrowRight', 'key: Ctrl+Enter', 'key: Shift+Tab', 'key: ?']);
+  expect(done(counter)).toEqual([
+    'press: Mirror',
+    'key: ArrowRight',
+    'key: Ctrl+Enter',
+    'key: Shift+Tab',
+    'key: ?',
+  ]);
 });
 
 test('a text with its Enter is one; the press into the field is another', async ({ page }) => {

@@ -5,7 +5,7 @@
 // files chosen or dropped together. Looking, scrolling and moving the pointer are none. Events made by a script count as well.
 import type { Page } from '@playwright/test';
 
-export interface Action {
+interface Action {
   readonly kind: 'press' | 'drag' | 'key' | 'text' | 'choice' | 'files';
   /** What it was done to, in the page's words. */
   readonly what: string;
@@ -52,14 +52,16 @@ function watchActions(binding: string): void {
     (target instanceof HTMLElement && target.isContentEditable);
   const nameOf = (target: EventTarget | null): string => {
     if (!(target instanceof Element)) return 'page';
-    const control = target.closest('button, a, label, input, select, textarea, summary, [role], [aria-label]');
+    const control = target.closest(
+      'button, a, label, input, select, textarea, summary, [role], [aria-label]',
+    );
     const label = control instanceof HTMLInputElement ? control.labels?.[0] : undefined;
     const text =
       control?.getAttribute('aria-label') ??
       label?.textContent ??
       control?.querySelector('strong')?.textContent ??
       control?.textContent;
-    return (text ?? '').trim().split('\n')[0]?.slice(0, 60) || target.tagName.toLowerCase();
+    return (text ?? '').trim().split(/[\n:]/)[0]?.slice(0, 60) || target.tagName.toLowerCase();
   };
 
   let from: { readonly x: number; readonly y: number } | null = null;
@@ -106,7 +108,8 @@ function watchActions(binding: string): void {
     (event) => {
       const byPointer =
         pressed instanceof Node && event.target instanceof HTMLInputElement
-          ? pressed === event.target || [...(event.target.labels ?? [])].some((label) => label.contains(pressed as Node))
+          ? pressed === event.target ||
+            [...(event.target.labels ?? [])].some((label) => label.contains(pressed as Node))
           : pressed === event.target;
       const now_ms = event.timeStamp;
       reached = (byPointer && now_ms - pointed_ms < 1000) || now_ms - tabbed_ms < 200 ? event.target : null;
@@ -136,7 +139,11 @@ function watchActions(binding: string): void {
       }
       if (target instanceof HTMLSelectElement && !leaves && !control) return; // its choice is counted
       if (key === 'Tab') tabbed_ms = event.timeStamp;
-      const held = [control ? 'Ctrl' : '', event.altKey ? 'Alt' : '', event.shiftKey && key.length > 1 ? 'Shift' : ''];
+      const held = [
+        control ? 'Ctrl' : '',
+        event.altKey ? 'Alt' : '',
+        event.shiftKey && key.length > 1 ? 'Shift' : '',
+      ];
       report('key', [...held.filter(Boolean), key === ' ' ? 'Space' : key].join('+'));
     },
     true,

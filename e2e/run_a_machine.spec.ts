@@ -47,7 +47,7 @@ test('from the sample star to a finished laser job', async ({ page }) => {
   await setSpeed(page, 'Cut', '150');
   await setSpeed(page, 'Mark', '150');
   await expect(strip(page, 'Job ready')).toBeVisible();
-  await expect(startButton(page)).toHaveAttribute('aria-disabled', 'true');
+  await expect(button(page, 'Practise the job')).toBeEnabled();
   await makeReady(page);
   await holdJog(page, 'right', 'X', 10);
   await holdJog(page, 'back', 'Y', 10);

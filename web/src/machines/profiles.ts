@@ -87,6 +87,10 @@ export const practiceMill: MachineProfile = {
   materials: [],
 };
 
+/** One of the two that everybody has, for machines on the screen. */
+export const isPractice = ({ id }: MachineProfile): boolean =>
+  id === practiceLaser.id || id === practiceMill.id;
+
 export const isMill = ({ options }: MachineProfile): boolean => options['tool'] === 'mill';
 
 interface Kept {

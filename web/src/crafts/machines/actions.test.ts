@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+import { signal } from '@preact/signals';
 import { expect, it } from 'vitest';
-import type { MachineState } from '../../machines/links/machine_state';
-import { startReason, zOptions } from './actions';
+import type { MachineCommand, MachineState } from '../../machines/links/machine_state';
+import { practiceLaser } from '../../machines/profiles';
+import { offersPractice, practiceReason, practiseTheJob, startReason, zOptions } from './actions';
+import { isAsking } from './panel/confirm';
 import type { MachinesSession } from './machines_session';
 
 const idle: Pick<MachineState, 'phase' | 'position_known' | 'axes_known' | 'can'> = {
@@ -51,4 +54,50 @@ it('a mill’s start asks where z is 0, and says where and when it was set', () 
     /at 0\.00\u2009mm .*set before the machine was connected/,
   );
   expect(labels({ origin_machine_mm: null, set_seconds_ago: 1 })?.[1]).toMatch(/Keep z 0 where it was set/);
+});
+
+/** A room with a practice machine that is to be connected, and the commands that it got. */
+function practiceRoom(job: object = {}) {
+  const commands: MachineCommand['do'][] = [];
+  const [link, state] = [signal<object | null>(null), signal<object | null>(null)];
+  const connecting = signal(false);
+  const session = {
+    ...room('laser', idle),
+    control: {
+      link,
+      state,
+      connecting,
+      isBusy: false,
+      command: (command: MachineCommand) => Promise.resolve(commands.push(command.do) > 0),
+    },
+    practise: () => {
+      link.value = {};
+      state.value = { ...idle, phase: 'alarm', position_known: false, alarm: { code: 0 }, can: ['home'] };
+      return Promise.resolve();
+    },
+    jobKey: signal('job'),
+    active: signal(true),
+    profiles: { current: practiceLaser },
+    ...job,
+  } as unknown as MachinesSession;
+  return { session, commands, link, connecting };
+}
+
+it('practising connects and asks about homing: no command is sent before the answer', async () => {
+  const { session, commands, link } = practiceRoom();
+  expect(offersPractice(session)).toBe(true);
+  expect(practiceReason(session)).toBeUndefined();
+  await practiseTheJob(session);
+  expect(link.value).not.toBeNull();
+  expect(isAsking()).toBe(true);
+  expect(commands).toEqual([]);
+  expect(offersPractice(session)).toBe(false); // Start and Stop stand there now
+});
+
+it('what does not fit or is out of date is not practised, and nothing is connected for it', async () => {
+  const misfit = practiceRoom({ plan: { value: { misfits: ['It is too wide.'], jobs: [] } } });
+  expect(practiceReason(misfit.session)).toBe('It is too wide.');
+  await practiseTheJob(misfit.session);
+  expect(misfit.link.value).toBeNull();
+  expect(practiceReason(practiceRoom({ isCurrent: { value: false } }).session)).toMatch(/out of date/);
 });

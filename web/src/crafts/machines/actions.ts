@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a person can have the machine do, each asked about before it moves or fires.
+import { effect } from '@preact/signals';
 import type { MachineCommand, MachineState, ZChoice } from '../../machines/links/machine_state';
 import { workBoundsOfBed } from '../../machines/places';
+import { isPractice } from '../../machines/profiles';
 import type { ToolPath } from '../../machines/toolpath';
 import { workBounds } from '../../machines/toolpath';
 import { formatDuration, formatFixed, formatNumber, withUnit } from '../../ui';
 import type { Choice, Option } from './panel/confirm';
-import { ask } from './panel/confirm';
+import { ask, isAsking } from './panel/confirm';
 import type { MachinesSession } from './machines_session';
 
 const eyes =
@@ -44,21 +46,27 @@ function secondsOf(session: MachinesSession, { seconds, stages }: ToolPath): num
 
 const millimetres = (mm: number) => withUnit(formatNumber(mm, 4), 'mm');
 
-/** Why the job cannot be started now; undefined where it can. */
-export function startReason(session: MachinesSession): string | undefined {
-  const { control } = session;
+/** Why the job is none that a machine could start, whichever is connected; undefined where it is one. */
+function jobReason(session: MachinesSession): string | undefined {
   const plan = session.plan.value;
-  const state = control.state.value;
-  if (state === null) return 'Connect a machine first';
   const wrong = wrongMachine(session);
   if (wrong) return wrong;
   if (plan === null) return session.subject.value ? 'Make the job first' : 'Open a drawing or a job first';
   if (session.planning.value) return 'Available when the job has been made';
   if (plan.misfits.length > 0 || session.job.value === null) return plan.misfits[0] ?? 'The job does not fit';
-  if (!session.isCurrent.value)
-    return session.subject.value
-      ? 'The job shown is out of date because settings changed: make the job again'
-      : 'The preview is out of date because some values are invalid. Correct the highlighted fields.';
+  if (session.isCurrent.value) return undefined;
+  return session.subject.value
+    ? 'The job shown is out of date because settings changed: make the job again'
+    : 'The preview is out of date because some values are invalid. Correct the highlighted fields.';
+}
+
+/** Why the job cannot be started now; undefined where it can. */
+export function startReason(session: MachinesSession): string | undefined {
+  const { control } = session;
+  const state = control.state.value;
+  if (state === null) return 'Connect a machine first';
+  const reason = jobReason(session);
+  if (reason) return reason;
   if (control.isBusy) return 'A job is running';
   if (state.phase === 'alarm') return 'The machine is in alarm: home it first';
   if (!state.position_known)
@@ -181,12 +189,58 @@ export function frame(session: MachinesSession): void {
   });
 }
 
-export function home(session: MachinesSession): void {
+/** `then`: what comes once the machine knows where it stands. */
+export function home(session: MachinesSession, then?: () => void): void {
+  const { control } = session;
   ask({
     title: 'Home the machine?',
     sentences: ['The head moves to its homing switches. Keep hands and clamps out of its way.'],
     action: 'Home',
-    run: () => void session.control.command({ do: 'home', confirmed: true }),
+    run: () => {
+      const run = async () => {
+        if (!(await control.command({ do: 'home', confirmed: true })) || then === undefined) return;
+        if (await whenSo(session, ({ phase, position_known }) => phase === 'idle' && position_known)) then();
+      };
+      void run();
+    },
+  });
+}
+
+/** Resolves to true once the connected machine is so, to false where it is gone or in alarm before, or another job is shown. */
+function whenSo(session: MachinesSession, isSo: (state: MachineState) => boolean): Promise<boolean> {
+  const { control } = session;
+  const job = session.jobKey.peek();
+  return new Promise((resolve) => {
+    const end = effect(() => {
+      const state = control.state.value;
+      const lost = control.link.value === null || session.jobKey.value !== job;
+      const so = !lost && state !== null && isSo(state);
+      const alarmed = (state?.alarm?.code ?? 0) > 0; // 0: locked, as before homing
+      if (!so && !lost && !alarmed) return;
+      resolve(so);
+      queueMicrotask(() => end());
+    });
+  });
+}
+
+/** May the job that is shown be practised? Where no machine is connected to a profile that has none. */
+export const offersPractice = ({ control, profiles }: MachinesSession): boolean =>
+  control.link.value === null && isPractice(profiles.current);
+
+/** Why not; undefined where it can. */
+export function practiceReason(session: MachinesSession): string | undefined {
+  if (session.control.connecting.value) return 'Connecting';
+  return jobReason(session);
+}
+
+/** Connects the practice machine and asks whether to home it; a laser's start is asked about after that, a mill's once z is set. */
+export async function practiseTheJob(session: MachinesSession): Promise<void> {
+  if (practiceReason(session) !== undefined) return;
+  await session.practise();
+  if (!(await whenSo(session, ({ can }) => can.includes('home')))) return;
+  home(session, () => {
+    // A mill's z is still to be set. Whoever went on to something else meanwhile is not asked.
+    if (isLaser(session) && session.active.value && !isAsking()) void start(session);
   });
 }
 

@@ -35,6 +35,9 @@ export const ask = <Value extends string = string>(question: Question<Value>): v
   asked.value = question as unknown as Question<string>;
 };
 
+/** Is a question open? */
+export const isAsking = (): boolean => asked.value !== null;
+
 /** Apart from the dialog, which takes the focus anew whenever it is drawn. */
 function Sentences({ of }: { readonly of: Question<string>['sentences'] }) {
   const sentences = typeof of === 'function' ? of() : of;

@@ -5,7 +5,7 @@ import { useRef } from 'preact/hooks';
 import { hasSerial, hasUsb, openSerial, openUsb } from '../../../machines/links/open_machine';
 import type { MachineLink } from '../../../machines/links/machine_link';
 import type { MachineProfile } from '../../../machines/profiles';
-import { asProfile, profileExtension, profileFile } from '../../../machines/profiles';
+import { asProfile, isPractice, profileExtension, profileFile } from '../../../machines/profiles';
 import { Button, Dialog, Icon, Menu, toast } from '../../../ui';
 import { download, safeFileName } from '../../../shared/session/download';
 import { bridgeMachines } from '../bridge_machines';
@@ -233,7 +233,7 @@ export function ConnectMenu({ session }: { readonly session: MachinesSession }) 
         </Button>
       ) : controller === 'ruida' ? null : (
         <Button
-          kind="filled"
+          kind={isPractice(profiles.current) ? 'outlined' : 'filled'}
           icon="machines"
           disabledReason={busy ?? serial}
           onClick={() => connect(() => openSerial(options()))}

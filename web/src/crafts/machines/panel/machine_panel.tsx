@@ -3,7 +3,19 @@
 import { useEffect, useRef } from 'preact/hooks';
 import type { MachineCommand, MachineState } from '../../../machines/links/machine_state';
 import { Button, formatFixed, Icon } from '../../../ui';
-import { focus, frame, hold, home, resume, start, startReason, stop } from '../actions';
+import {
+  focus,
+  frame,
+  hold,
+  home,
+  offersPractice,
+  practiceReason,
+  practiseTheJob,
+  resume,
+  start,
+  startReason,
+  stop,
+} from '../actions';
 import { ConnectMenu, ProfileMenu } from './machine_menus';
 import type { MachinesSession } from '../machines_session';
 import { stateWords } from './state_words';
@@ -277,6 +289,18 @@ function Jog({ session }: { readonly session: MachinesSession }) {
 /** Always in sight, wherever one has scrolled: Stop stands here as long as a machine is connected. */
 export function StartAndStop({ session }: { readonly session: MachinesSession }) {
   const connected = session.control.link.value !== null;
+  if (offersPractice(session))
+    return (
+      <Button
+        kind="filled"
+        size="big"
+        icon="play"
+        disabledReason={practiceReason(session)}
+        onClick={() => void practiseTheJob(session)}
+      >
+        Practise the job
+      </Button>
+    );
   return (
     <div class={connected ? 'start-and-stop' : undefined}>
       <Button

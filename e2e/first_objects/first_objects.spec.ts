@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A maker's first own object in every craft: how many actions, how many seconds. The way is the one that the page offers first: the
+// filled button, else what is written on the page.
+import type { Locator, Page } from '@playwright/test';
+import { readFileSync } from 'node:fs';
+import { position, setSpeed, square, startButton } from '../machine_room';
+import { backend, expect as expectSoon, openPage, readStl, strip, test as base } from '../page';
+import type { ActionCount } from './actions';
+import { countActions } from './actions';
+import type { OwnFile } from './own_files';
+import { ball, measuredPyramid, paintedHill, smallBall, wrongFile } from './own_files';
+import { recordRow } from './record_row';
+
+const test = base.extend<{ counter: ActionCount }>({
+  counter: async ({ page }, use) => {
+    await use(await countActions(page));
+  },
+});
+test.skip(backend !== 'wasm', 'counted once: the worker serves the same page');
+test.setTimeout(900_000); // machines take their time, practice or not
+test.use({ actionTimeout: 120_000 });
+/** What is measured is how long it takes: a busy machine is waited for. */
+const expect = expectSoon.configure({ timeout: 300_000 });
+
+const ready = 'Preview up to date';
+const button = (page: Page, name: string | RegExp) =>
+  page.getByRole('button', typeof name === 'string' ? { name, exact: true } : { name });
+
+/** The press that opens the file chooser, and what is chosen in it. */
+async function chooseFiles(page: Page, opener: Locator, files: readonly OwnFile[]): Promise<void> {
+  const choosing = page.waitForEvent('filechooser');
+  await opener.click();
+  await (await choosing).setFiles([...files]);
+}
+
+async function openOwnModel(
+  page: Page,
+  craft: 'Relief' | 'Thermoform' | 'Zippable',
+  files: readonly OwnFile[] = [ball],
+): Promise<void> {
+  await chooseFiles(page, button(page, 'Open a file'), files);
+  await page.getByRole('dialog').getByRole('button', { name: craft }).click();
+  await expect(strip(page, ready)).toBeVisible();
+}
+
+async function save(page: Page, press: () => Promise<void>): Promise<Buffer> {
+  const waiting = page.waitForEvent('download', { timeout: 300_000 });
+  await press();
+  return readFileSync(await (await waiting).path());
+}
+
+test('first minute', async ({ page, counter }) => {
+  await openPage(page);
+  counter.begin();
+  await page.locator('.gallery button', { hasText: 'Bust' }).click();
+  await expect(strip(page, ready)).toBeVisible();
+  recordRow('first_minute', counter);
+});
+
+test('relief', async ({ page, counter }) => {
+  await openPage(page);
+  counter.begin();
+  await openOwnModel(page, 'Relief');
+  await button(page, 'Solve at full detail').click();
+  await expect(strip(page, 'Relief ready')).toBeVisible();
+  const stl = await save(page, () => button(page, 'Export STL').click());
+  expect(readStl(stl).closed).toBe(true);
+  recordRow('relief', counter);
+});
+
+test('shell', async ({ page, counter }) => {
+  await openPage(page);
+  counter.begin();
+  await openOwnModel(page, 'Thermoform', paintedHill());
+  await button(page, 'Form at full detail').click();
+  await expect(strip(page, 'Sheet formed')).toBeVisible();
+  const print = await save(page, () => button(page, 'Export print').click());
+  expect(print.toString('latin1', 0, 5)).toBe('%PDF-');
+  await button(page, 'Export something else').click();
+  const mould = await save(page, () => page.getByRole('menuitem', { name: /^Mould, STL/ }).click());
+  expect(readStl(mould).closed).toBe(true);
+  recordRow('shell', counter);
+});
+
+async function makeRibbon(page: Page): Promise<void> {
+  await button(page, 'Make the ribbon').click();
+  await expect(strip(page, 'Ribbon unfolded')).toBeVisible();
+}
+
+test('zippable', async ({ page, counter }) => {
+  await openPage(page);
+  counter.begin();
+  await openOwnModel(page, 'Zippable');
+  await makeRibbon(page);
+  await page.getByRole('radio', { name: 'Sheets to cut' }).click();
+  await expect(page.getByRole('img', { name: /^\d+ pieces? on \d+ sheets? of / })).toBeVisible();
+  const plan = await save(page, () => button(page, 'Export plan, SVG').click());
+  expect(plan.toString()).toContain('id="cut"');
+  recordRow('zippable', counter);
+});
+
+test('zipping', async ({ page, counter }) => {
+  await openPage(page);
+  await page.getByRole('link', { name: 'Zippable', exact: true }).click();
+  await page.locator('.gallery button', { hasText: 'Star' }).click();
+  await expect(strip(page, ready)).toBeVisible();
+  await makeRibbon(page);
+  counter.begin();
+  await page.getByRole('radio', { name: 'Zipped' }).click();
+  await button(page, 'Will it zip? Simulate cloth').click();
+  await expect(page.getByText(/^It (zips|does not zip)/)).toBeVisible();
+  recordRow('zipping', counter);
+});
+
+test('drawn parts', async ({ page, counter }) => {
+  await openPage(page);
+  counter.begin();
+  await openOwnModel(page, 'Zippable');
+  await button(page, 'Draw the parts').click();
+  const model = await page.locator('.zippable-model').boundingBox();
+  if (model === null) throw new Error('The model is not to be seen.');
+  const at = (x: number, y: number) => [model.x + x * model.width, model.y + y * model.height] as const;
+  /** Until the model can be picked on, a press finds nothing: then it does not count. */
+  const place = async (x: number, y: number, points: number) => {
+    await page.mouse.click(...at(x, y));
+    await expect(button(page, /of the new border$/)).toHaveCount(points);
+  };
+  await page.waitForTimeout(3000); // a person looks where to draw
+  await place(0.25, 0.5, 1);
+  await place(0.75, 0.5, 2);
+  await page.mouse.move(...at(0.05, 0.75));
+  await page.mouse.down();
+  await page.mouse.move(...at(0.95, 0.75), { steps: 10 });
+  await page.mouse.up();
+  await place(0.5, 0.5, 3);
+  await button(page, 'Close the border').click();
+  await expect(page.getByText('Drawn by hand: 1 border')).toBeVisible();
+  await expect(page.getByRole('list', { name: 'Parts' }).getByRole('button')).toHaveCount(2);
+  await expect(strip(page, ready)).toBeVisible();
+  recordRow('drawn_parts', counter);
+});
+
+test('evidence', async ({ page, counter }) => {
+  const files = await measuredPyramid(page);
+  await page.getByRole('link', { name: 'Formwright, start' }).click();
+  counter.begin();
+  await chooseFiles(page, button(page, 'Open a file'), files);
+  await expect(strip(page, 'Compared with the settings as they are')).toBeVisible();
+  // As the tutorial does: one cause at a time, and coarse sheets, are much quicker.
+  await page.getByRole('switch', { name: 'Two causes at once' }).click();
+  await page.getByRole('switch', { name: 'Propose a measurement' }).click();
+  await page.getByRole('textbox', { name: 'Triangles' }).click();
+  await page.keyboard.press('Control+a');
+  await page.keyboard.type('500');
+  await page.keyboard.press('Enter');
+  await page.locator('.inspector-foot').getByRole('button', { name: 'Diagnose', exact: true }).click();
+  await expect(strip(page, 'Diagnosis ready')).toBeVisible({ timeout: 600_000 });
+  await expect(button(page, /^Uneven heating, side to side/)).toBeVisible();
+  recordRow('evidence', counter);
+});
+
+/** Not counted: so that the story is short, the laser is quicker than it would be. */
+async function setLaserSpeeds(page: Page): Promise<void> {
+  await page.getByRole('link', { name: 'Machines', exact: true }).click();
+  await page.getByLabel('Model or project file').setInputFiles(square);
+  await expect(strip(page, 'Job ready')).toBeVisible();
+  for (const layer of ['Cut', 'Mark', 'Engrave']) await setSpeed(page, layer, '150');
+  await page.getByRole('link', { name: 'Zippable', exact: true }).click();
+}
+
+test('laser', async ({ page, counter }) => {
+  await openPage(page);
+  await openOwnModel(page, 'Zippable', [smallBall]);
+  await makeRibbon(page);
+  await setLaserSpeeds(page);
+  counter.begin();
+  await page.getByRole('radio', { name: 'Sheets to cut' }).click();
+  await button(page, /Send to a machine/).click();
+  await button(page, 'Lay out again for 400 × 400').click();
+  await expect(page.getByRole('img', { name: /1 sheet of 400 × 400/ })).toBeVisible();
+  await button(page, /Send to a machine/).click();
+  await expect(strip(page, 'Job ready')).toBeVisible();
+  await button(page, 'Practise the job').click();
+  await page.getByRole('dialog').getByRole('button', { name: 'Home', exact: true }).click();
+  await button(page, 'Start with the laser on').click();
+  await expect(strip(page, 'ball is done')).toBeVisible();
+  recordRow('laser', counter);
+});
+
+/** Not counted: a medal that a mill carves in a minute. */
+async function setReliefSize(page: Page, width_mm: string, thickness_mm: string): Promise<void> {
+  for (const [name, value] of [
+    ['Width', width_mm],
+    ['Thickness', thickness_mm],
+  ] as const) {
+    await page.getByRole('textbox', { name, exact: true }).fill(value);
+    await page.getByRole('textbox', { name, exact: true }).press('Enter');
+  }
+  await expect(strip(page, ready)).toBeVisible();
+}
+
+test('mill', async ({ page, counter }) => {
+  await openPage(page);
+  await openOwnModel(page, 'Relief');
+  await setReliefSize(page, '10', '1');
+  await button(page, 'Solve at full detail').click();
+  await expect(strip(page, 'Relief ready')).toBeVisible();
+  counter.begin();
+  await button(page, 'Send to a machine').click();
+  await button(page, 'Make the job').click();
+  await expect(strip(page, 'Job ready')).toBeVisible();
+  await button(page, 'Practise the job').click();
+  await page.getByRole('dialog').getByRole('button', { name: 'Home', exact: true }).click();
+  await expect(page.locator('.state-chip')).toHaveText('Ready');
+  // Held down, until the tool has come down to the stock: the job rises above it.
+  await page.getByRole('button', { name: 'Move the tool down' }).hover();
+  await page.mouse.down();
+  const height = position(page).locator('div', { hasText: 'Z' }).locator('b');
+  await expect(height).toHaveText(/^−[1-9]\d\.\d\d$/);
+  await page.mouse.up();
+  await expect(page.locator('.state-chip')).toHaveText('Ready');
+  for (const [tool, done] of [
+    ['roughing', /^ball, roughing is done$/],
+    ['finishing', /^ball, finishing is done$/],
+  ] as const) {
+    if (tool === 'finishing') await button(page, 'Set z here').click();
+    await startButton(page).click();
+    const dialog = page.getByRole('dialog');
+    await dialog.getByText(/^Set z to the stock’s top here/).click();
+    await dialog.getByRole('button', { name: 'Start with the spindle on' }).click();
+    await expect(page.getByRole('contentinfo').locator('strong').getByText(done)).toBeVisible();
+  }
+  recordRow('mill', counter);
+});
+
+test('wrong file', async ({ page, counter }) => {
+  await openPage(page);
+  counter.begin();
+  await chooseFiles(page, button(page, 'Open a file'), [wrongFile]);
+  await page.getByRole('dialog').getByRole('button', { name: 'Relief' }).click();
+  await expect(page.getByRole('alert').getByText('Could not open notes.obj')).toBeVisible();
+  await chooseFiles(page, button(page, 'Choose another file'), [ball]);
+  await expect(strip(page, ready)).toBeVisible();
+  recordRow('wrong_file', counter);
+});
+
+test('keyboard', async ({ page, counter }) => {
+  await openPage(page);
+  counter.begin();
+  await page.keyboard.press('?');
+  await expect(page.getByRole('dialog', { name: 'All keys' })).toBeVisible();
+  await page.keyboard.press('Escape');
+  const choosing = page.waitForEvent('filechooser');
+  await page.keyboard.press('Control+o');
+  await (await choosing).setFiles(ball);
+  await expect(page.getByRole('dialog').getByRole('button', { name: 'Relief' })).toBeFocused();
+  await page.keyboard.press('Enter');
+  await expect(strip(page, ready)).toBeVisible();
+  await page.keyboard.press('Control+Enter');
+  await expect(strip(page, 'Relief ready')).toBeVisible();
+  const stl = await save(page, () => page.keyboard.press('Control+e'));
+  expect(readStl(stl).closed).toBe(true);
+  recordRow('keyboard', counter);
+});
+
+test.describe('on a phone', () => {
+  test.use({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
+  test('relief', async ({ page, counter }) => {
+    await openPage(page);
+    counter.begin();
+    const choosing = page.waitForEvent('filechooser');
+    await button(page, 'Open a file').tap();
+    await (await choosing).setFiles(ball);
+    await page.getByRole('dialog').getByRole('button', { name: 'Relief' }).tap();
+    await expect(strip(page, ready)).toBeVisible();
+    await button(page, 'Solve at full detail').tap();
+    await expect(strip(page, 'Relief ready')).toBeVisible();
+    const stl = await save(page, () => button(page, 'Export STL').tap());
+    expect(readStl(stl).closed).toBe(true);
+    recordRow('phone', counter);
+  });
+});

@@ -70,8 +70,10 @@ fuzz_one() {  # name
     found=$((found + 1))
     grep -E '^SUMMARY|Test unit written' "$log" | tail -n 2 >&2
   done
-  # Of this subshell's children, user and system time: "1m2.345s 0m1.234s" in the second line.
-  times | awk -F'[ms ]+' 'NR == 2 { printf "stat::seconds: %d\n", $1 * 60 + $2 + $3 * 60 + $4 }' >>"$log"
+  # Of this subshell's children, user and system time: "1m2.345s 0m1.234s" in the second line. A pipe would be another subshell.
+  times >"$log.times"
+  awk -F'[ms ]+' 'NR == 2 { printf "stat::seconds: %d\n", $1 * 60 + $2 + $3 * 60 + $4 }' "$log.times" >>"$log"
+  rm "$log.times"
   printf '%s: %d s, %d inputs kept, %d findings\n' "$name" $((SECONDS - begin)) "$(find "$corpus/$name" -type f | wc -l)" "$found"
   [ $found -eq 0 ]
 }

@@ -168,6 +168,9 @@ async function setLaserSpeeds(page: Page): Promise<void> {
   await page.getByRole('link', { name: 'Zippable', exact: true }).click();
 }
 
+/** Practice machines take as long as real ones: jobs run to their end in `npm run actions` and `make test-all` only. */
+const inFull = process.env['FORMWRIGHT_LONG_TESTS'] === 'ON';
+
 test('laser', async ({ page, counter }) => {
   await openPage(page);
   await openOwnModel(page, 'Zippable', [smallBall]);
@@ -183,8 +186,9 @@ test('laser', async ({ page, counter }) => {
   await button(page, 'Practise the job').click();
   await page.getByRole('dialog').getByRole('button', { name: 'Home', exact: true }).click();
   await button(page, 'Start with the laser on').click();
-  await expect(strip(page, 'ball is done')).toBeVisible();
-  recordRow('laser', counter);
+  await expect(page.locator('.state-chip')).toHaveText('Working');
+  if (inFull) await expect(strip(page, 'ball is done')).toBeVisible();
+  recordRow('laser', counter); // nothing more is asked of a person until it is done
 });
 
 /** Not counted: a medal that a mill carves in a minute. */
@@ -200,6 +204,7 @@ async function setReliefSize(page: Page, width_mm: string, thickness_mm: string)
 }
 
 test('mill', async ({ page, counter }) => {
+  test.skip(!inFull, 'a minute of milling, as run_a_machine.spec.ts has it, too');
   await openPage(page);
   await openOwnModel(page, 'Relief');
   await setReliefSize(page, '10', '1');

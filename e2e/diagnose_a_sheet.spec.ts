@@ -12,7 +12,9 @@ const seen = { timeout: 300_000 };
 async function openRoom(page: Page): Promise<void> {
   await openPage(page);
   await page.getByRole('link', { name: 'Evidence', exact: true }).click();
-  await expect(page.getByText('Find out why a formed part came out wrong. You need')).toBeVisible();
+  await expect(
+    page.getByText('Find out why a formed part came out wrong, and what to change in the next print.'),
+  ).toBeVisible();
 }
 
 const give = (page: Page, files: readonly ReturnType<typeof fileOf>[]) =>

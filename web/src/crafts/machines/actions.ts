@@ -53,7 +53,12 @@ function jobReason(session: MachinesSession): string | undefined {
   if (wrong) return wrong;
   if (plan === null) return session.subject.value ? 'Make the job first' : 'Open a drawing or a job first';
   if (session.planning.value) return 'Available when the job has been made';
-  if (plan.misfits.length > 0 || session.job.value === null) return plan.misfits[0] ?? 'The job does not fit';
+  if (plan.misfits.length > 0 || session.job.value === null) {
+    // A pattern is laid out again, never made smaller (alarm_bar.tsx).
+    const { drawing } = session.document.value;
+    const ofPlan = drawing?.kind === 'drawing' && drawing.of_plan === true;
+    return ofPlan ? 'The sheet does not fit on the bed' : (plan.misfits[0] ?? 'The job does not fit');
+  }
   if (session.isCurrent.value) return undefined;
   return session.subject.value
     ? 'The job shown is out of date because settings changed: make the job again'

@@ -23,7 +23,9 @@ test('a sheet that is larger than the bed is laid out again for it', async ({ pa
   const first = page.getByRole('menuitem', { name: 'Sheet 1', exact: true });
   await first.click();
 
-  await expect(page.getByRole('status').getByText('The sheet does not fit on the bed')).toBeVisible({ timeout: 60_000 });
+  await expect(page.getByRole('status').getByText('The sheet does not fit on the bed')).toBeVisible({
+    timeout: 60_000,
+  });
   await expect(page.getByText(/shrink/)).toHaveCount(0);
   await button(page, 'Lay out again for 400 × 400').click();
   await expect(page.getByRole('img', { name: / of 400 × 400\smm; / })).toBeVisible({ timeout: 60_000 });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Between a job and its host: the host is told the share of the time that has passed, not of the code.
+// Between a job and its host: what reaches the host is the share of the time that has passed, not of the code.
 #include <memory>
 #include <string>
 

@@ -7,6 +7,7 @@ import { titleOf } from '../session/craft_document';
 import type { ModelRoom } from '../session/opened_model';
 import type { CraftDocument } from '../session/craft_document';
 import { Gallery } from './gallery';
+import './empty_room.css';
 
 export interface EmptyRoomProps {
   /** One sentence: what is made here, and of what. */

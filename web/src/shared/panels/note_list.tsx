@@ -6,6 +6,7 @@ import { Button, Icon, IconButton } from '../../ui';
 import type { ReportNote } from '../session/report_notes';
 import { headed } from '../session/report_notes';
 import { narrow } from './narrow';
+import './note_list.css';
 
 export interface NoteListProps {
   readonly notes: readonly ReportNote[];

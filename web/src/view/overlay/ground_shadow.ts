@@ -19,7 +19,7 @@ import { along, dot, scale, subtract } from '../vector';
 
 /** Half the ground's side, in the object's radii. */
 const REACH = 2.4;
-/** Highest place of an object that is told apart, in radii: none is higher than twice its radius. */
+/** Highest place of an object that has a value of its own, in radii: none is higher than twice its radius. */
 const HIGHEST = 2.5;
 
 export class GroundShadow {

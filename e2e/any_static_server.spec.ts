@@ -58,27 +58,33 @@ test('the page works below any path of a plain file server, and afterwards witho
   page.on('request', (request) => {
     if (/^https?:/.test(request.url()) && !request.url().startsWith(address)) elsewhere.push(request.url());
   });
+  const preview = async () => {
+    await page.locator('.gallery button', { hasText: 'Torus' }).click();
+    await expect(strip(page, 'Preview up to date')).toBeVisible();
+  };
   await page.goto(address);
   // Nothing isolates the first visit: it solves without shared memory and has nothing to warn of.
   expect(await page.evaluate(() => crossOriginIsolated)).toBe(false);
-  await page.locator('.gallery button', { hasText: 'Torus' }).click();
-  await expect(strip(page, 'Preview up to date')).toBeVisible();
+  await preview();
   await solve(page);
   const alerts = await page.getByRole('alert').allInnerTexts();
   expect(alerts.filter((text) => text !== '')).toEqual([]);
+  await expect(page.getByText('Saved', { exact: true })).toBeVisible();
 
   // Later visits are answered by the service worker, with the headers.
   await page.evaluate(() => navigator.serviceWorker.ready.then(() => undefined));
   await page.reload();
   await expect.poll(() => page.evaluate(() => crossOriginIsolated)).toBe(true);
-  await expect(strip(page, 'Preview up to date')).toBeVisible();
+  await expect(strip(page, 'Relief ready')).toBeVisible();
   expect(notFound).toEqual([]);
 
   server.closeAllConnections();
   server.close();
   await context.setOffline(true);
   await page.goto(`${address}index.html`);
-  await expect(strip(page, 'Preview up to date')).toBeVisible();
+  await expect(strip(page, 'Relief ready')).toBeVisible();
+  await page.getByRole('link', { name: 'Formwright, start' }).click();
+  await preview();
   await solve(page);
   expect(elsewhere).toEqual([]);
 });

@@ -2,7 +2,7 @@
 import type { Page } from '@playwright/test';
 import { readFileSync } from 'node:fs';
 import { measuredObject, scannedSheet } from './measured_object';
-import { backend, expect, expectAccessible, fileOf, looks, openPage, strip, test } from './page';
+import { backend, expect, expectAccessible, fileOf, openPage, strip, test } from './page';
 
 test.skip(backend === 'mock', 'the mock makes reliefs only');
 test.setTimeout(400_000);
@@ -37,76 +37,68 @@ async function quickly(page: Page): Promise<void> {
 const run = (page: Page, name: 'Diagnose' | 'Calibrate') =>
   page.locator('.inspector-foot').getByRole('button', { name, exact: true }).click();
 
-/** In both themes at both widths, without opening the page anew: the diagnosis took long enough. */
-async function expectAccessibleEverywhere(page: Page, what: string): Promise<void> {
-  for (const { viewport, ...media } of looks) {
-    await page.emulateMedia(media);
-    await page.setViewportSize(viewport);
-    await expectAccessible(page, `${what}, ${media.colorScheme}, ${viewport.width}`);
-  }
-  await page.setViewportSize({ width: 1280, height: 800 });
-}
+test(
+  'three files, a named cause, the extended model, the report, the next print, a reload',
+  { tag: '@screens' },
+  async ({ page }) => {
+    await openObject(page);
+    await expect(page.getByRole('img', { name: /^Measured height: .*/ })).toBeVisible();
+    await expect(page.getByText('196 points')).toHaveCount(2);
+    await page.getByRole('application', { name: /^Points of the sheet/ }).focus();
+    await page.keyboard.press('ArrowRight');
+    await expect(page.getByText(/^At -?−?\d.* apart$/)).toBeVisible();
+    await expectAccessible(page, 'compared');
 
-test('three files, a named cause, the extended model, the report, the next print, a reload', async ({
-  page,
-}) => {
-  await openObject(page);
-  await expect(page.getByRole('img', { name: /^Measured height: .*/ })).toBeVisible();
-  await expect(page.getByText('196 points')).toHaveCount(2);
-  await page.getByRole('application', { name: /^Points of the sheet/ }).focus();
-  await page.keyboard.press('ArrowRight');
-  await expect(page.getByText(/^At -?−?\d.* apart$/)).toBeVisible();
-  await expectAccessibleEverywhere(page, 'compared');
+    await quickly(page);
+    await run(page, 'Diagnose');
+    await expect(page.getByRole('progressbar')).toBeVisible();
+    await expect(strip(page, 'Diagnosis ready')).toBeVisible(seen);
+    const cause = page.getByRole('button', { name: /^Uneven heating, side to side/ });
+    await cause.click();
+    await expect(page.getByText('What to do.')).toBeVisible();
+    await expect(page.getByRole('img', { name: /^Points left out .* to .*mm, −\d+\s%/ })).toBeVisible();
 
-  await quickly(page);
-  await run(page, 'Diagnose');
-  await expect(page.getByRole('progressbar')).toBeVisible();
-  await expect(strip(page, 'Diagnosis ready')).toBeVisible(seen);
-  const cause = page.getByRole('button', { name: /^Uneven heating, side to side/ });
-  await cause.click();
-  await expect(page.getByText('What to do.')).toBeVisible();
-  await expect(page.getByRole('img', { name: /^Points left out .* to .*mm, −\d+\s%/ })).toBeVisible();
+    const distances = page.getByRole('img', { name: /^Distances between measured and simulated/ });
+    const meanOf = async () =>
+      Number(/mean ([\d.]+)/.exec((await distances.getAttribute('aria-label')) ?? '')?.[1]);
+    const calibrated = await meanOf();
+    await page.getByRole('switch', { name: 'Show the simulation with this cause included' }).click();
+    await expect(distances).toHaveAttribute('aria-label', /simulated, with the cause/);
+    expect(await meanOf()).toBeLessThan(calibrated);
+    await expectAccessible(page, 'diagnosed', 'evidence');
 
-  const distances = page.getByRole('img', { name: /^Distances between measured and simulated/ });
-  const meanOf = async () =>
-    Number(/mean ([\d.]+)/.exec((await distances.getAttribute('aria-label')) ?? '')?.[1]);
-  const calibrated = await meanOf();
-  await page.getByRole('switch', { name: 'Show the simulation with this cause included' }).click();
-  await expect(distances).toHaveAttribute('aria-label', /simulated, with the cause/);
-  expect(await meanOf()).toBeLessThan(calibrated);
-  await expectAccessibleEverywhere(page, 'diagnosed');
+    await page.getByRole('radio', { name: 'On the object' }).click();
+    await expect(page.getByText(/^Arrows from measured to simulated/)).toBeVisible();
+    await expectAccessible(page, 'on the object');
+    await page.getByRole('radio', { name: 'Flat maps' }).click();
 
-  await page.getByRole('radio', { name: 'On the object' }).click();
-  await expect(page.getByText(/^Arrows from measured to simulated/)).toBeVisible();
-  await expectAccessibleEverywhere(page, 'on the object');
-  await page.getByRole('radio', { name: 'Flat maps' }).click();
+    const waiting = page.waitForEvent('download');
+    await page.getByRole('button', { name: 'Download the results, or stop using them' }).click();
+    await page.getByRole('menuitem', { name: /^Download report/ }).click();
+    const report = await waiting;
+    expect(report.suggestedFilename()).toMatch(/\.html$/);
+    expect(readFileSync(await report.path(), 'utf8')).toContain('Uneven heating, side to side');
 
-  const waiting = page.waitForEvent('download');
-  await page.getByRole('button', { name: 'Download the results, or stop using them' }).click();
-  await page.getByRole('menuitem', { name: /^Download report/ }).click();
-  const report = await waiting;
-  expect(report.suggestedFilename()).toMatch(/\.html$/);
-  expect(readFileSync(await report.path(), 'utf8')).toContain('Uneven heating, side to side');
+    await page.getByRole('button', { name: 'Use in the next print' }).click();
+    await expect(page.getByRole('button', { name: 'Used in the next print' })).toBeVisible();
+    await page.getByRole('link', { name: 'Thermoform', exact: true }).click();
+    await page.locator('.gallery button', { hasText: 'Pyramid' }).click();
+    await expect(strip(page, 'Preview up to date')).toBeVisible();
+    await expect(page.getByText('Machine: Diagnosed machine')).toBeVisible();
+    await expect(page.getByText('Saved', { exact: true })).toBeVisible();
 
-  await page.getByRole('button', { name: 'Use in the next print' }).click();
-  await expect(page.getByRole('button', { name: 'Used in the next print' })).toBeVisible();
-  await page.getByRole('link', { name: 'Thermoform', exact: true }).click();
-  await page.locator('.gallery button', { hasText: 'Pyramid' }).click();
-  await expect(strip(page, 'Preview up to date')).toBeVisible();
-  await expect(page.getByText('Machine: Diagnosed machine')).toBeVisible();
-  await expect(page.getByText('Saved', { exact: true })).toBeVisible();
-
-  await page.reload();
-  await expect(page.getByText('Machine: Diagnosed machine')).toBeVisible();
-  await page.getByRole('button', { name: 'Form without the machine profile' }).click();
-  await expect(page.getByText('Machine: Diagnosed machine')).toBeHidden();
-  await page.keyboard.press('Control+z');
-  await expect(page.getByText('Machine: Diagnosed machine')).toBeVisible();
-  await page.getByRole('link', { name: 'Evidence', exact: true }).click();
-  await expect(strip(page, 'Diagnosis ready')).toBeVisible();
-  await expect(cause).toBeVisible();
-  await expect(page.getByRole('img', { name: /^Height, simulated minus measured/ })).toBeVisible();
-});
+    await page.reload();
+    await expect(page.getByText('Machine: Diagnosed machine')).toBeVisible();
+    await page.getByRole('button', { name: 'Form without the machine profile' }).click();
+    await expect(page.getByText('Machine: Diagnosed machine')).toBeHidden();
+    await page.keyboard.press('Control+z');
+    await expect(page.getByText('Machine: Diagnosed machine')).toBeVisible();
+    await page.getByRole('link', { name: 'Evidence', exact: true }).click();
+    await expect(strip(page, 'Diagnosis ready')).toBeVisible();
+    await expect(cause).toBeVisible();
+    await expect(page.getByRole('img', { name: /^Height, simulated minus measured/ })).toBeVisible();
+  },
+);
 
 test('a calibration says what the data do not tell, and takes what it fitted along', async ({ page }) => {
   await openObject(page);
@@ -121,7 +113,7 @@ test('a calibration says what the data do not tell, and takes what it fitted alo
   await expect(page.getByRole('img', { name: /^Likelihood of Young/ })).toBeVisible();
   await page.getByRole('button', { name: 'Use in the next print' }).click();
   await expect(page.getByRole('button', { name: 'Used in the next print' })).toBeVisible();
-  await expectAccessibleEverywhere(page, 'calibrated');
+  await expectAccessible(page, 'calibrated');
 });
 
 test('a run stops at once, and what was there stays', async ({ page }) => {
@@ -141,7 +133,7 @@ test('a run stops at once, and what was there stays', async ({ page }) => {
 
 test('files that lack a third, are strange or in metres are said in words', async ({ page }) => {
   await openRoom(page);
-  await expectAccessibleEverywhere(page, 'empty');
+  await expectAccessible(page, 'empty');
   const [mould, setup, measured] = measuredObject();
   await give(page, [mould, setup]);
   await expect(page.getByText('Still missing: measured.csv')).toBeVisible();
@@ -203,7 +195,7 @@ test('a scan is measured, its corners set by hand, and becomes an object', async
   await expect(corner('back left')).not.toHaveAttribute('aria-label', before ?? '');
   await page.keyboard.press('Control+z');
   await expect(corner('back left')).toHaveAttribute('aria-label', before ?? '');
-  await expectAccessibleEverywhere(page, 'corners');
+  await expectAccessible(page, 'corners');
   await measure();
   await expect(page.getByText(/^similarity (0\.99|1\.0)/)).toBeVisible();
 
@@ -225,7 +217,7 @@ test('a virtual object with a fault of one’s choice', async ({ page }) => {
   await expect(page.locator('.tip:popover-open')).toBeVisible();
   await dialog.getByRole('textbox', { name: 'Points', exact: true }).fill('300');
   await dialog.getByRole('textbox', { name: 'Points', exact: true }).press('Tab');
-  await expectAccessibleEverywhere(page, 'virtual object');
+  await expectAccessible(page, 'virtual object');
   await dialog.getByRole('button', { name: 'Make the virtual object' }).click();
   await expect(page.getByRole('button', { name: /^virtual pyramid 3\d\d points/ })).toBeVisible(seen);
   await expect(strip(page, 'Compared with the settings as they are')).toBeVisible(seen);

@@ -5,6 +5,7 @@ import type { Page } from '@playwright/test';
 import { test as base, expect } from '@playwright/test';
 import { readFileSync } from 'node:fs';
 import { resolve } from 'node:path';
+import { expectSameScreen } from './screens';
 
 export const backend = process.env['FORMWRIGHT_BACKEND'] ?? 'mock';
 
@@ -127,34 +128,47 @@ export function readStl(bytes: Buffer): Solid {
   return { triangles, size: high.map((x, k) => x - (low[k] ?? 0)), closed };
 }
 
-/** Both themes at both widths, as a new page takes them. */
-export const looks = (['light', 'dark'] as const).flatMap((colorScheme) =>
-  [
-    { width: 1280, height: 800 },
-    { width: 390, height: 844 },
-  ].map((viewport) => ({ colorScheme, viewport, reducedMotion: 'reduce' as const })),
+/** Both themes at both widths. What the worker serves is the same page: there one is enough. */
+const looks = (backend === 'native' ? (['light'] as const) : (['light', 'dark'] as const)).flatMap(
+  (colorScheme) =>
+    (backend === 'native' ? [1280] : [1280, 390]).map((width) => ({
+      media: { colorScheme, reducedMotion: 'reduce' as const },
+      viewport: { width, height: width === 390 ? 844 : 800 },
+    })),
 );
 
-/** The same story in every look: an axe test each. What the worker serves is the same page: once is enough. */
-export function testEveryLook(name: string, story: (page: Page) => Promise<void>): void {
-  for (const look of looks)
-    test(`${name}, ${look.colorScheme}, ${look.viewport.width} px`, async ({ browser }) => {
-      test.skip(backend === 'native', 'the worker serves the same page');
-      const context = await browser.newContext(look);
-      try {
-        await story(await context.newPage());
-      } finally {
-        await context.close();
-      }
-    });
+/** The state that a story has reached, in every look, without making it anew. */
+export async function inEveryLook(page: Page, check: (look: string) => Promise<void>): Promise<void> {
+  const before = page.viewportSize();
+  for (const { media, viewport } of looks) {
+    await page.emulateMedia(media);
+    await page.setViewportSize(viewport);
+    // The picture follows its frame a moment later.
+    await page.evaluate(
+      () =>
+        new Promise((done) =>
+          requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(done, 100))),
+        ),
+    );
+    await check(`${media.colorScheme}, ${viewport.width} px`);
+  }
+  await page.emulateMedia({ colorScheme: null, reducedMotion: null });
+  if (before) await page.setViewportSize(before);
 }
 
-/** Fails with what axe finds serious; `what` says on which state of the page. */
-export async function expectAccessible(page: Page, what: string): Promise<void> {
-  const { violations } = await new AxeBuilder({ page }).analyze();
-  const serious = violations.filter(({ impact }) => impact === 'serious' || impact === 'critical');
-  const listed = serious.map(
-    ({ id, nodes }) => `${what}: ${id}: ${nodes.map(({ html }) => html.slice(0, 120)).join(' | ')}`,
-  );
-  expect(listed).toEqual([]);
+/**
+ * Fails with what axe finds serious in any look; `what` says on which state of the page. `screen` names a state that must
+ * look as it was kept, too (screens.ts).
+ */
+export async function expectAccessible(page: Page, what: string, screen?: string): Promise<void> {
+  await inEveryLook(page, async (look) => {
+    const { violations } = await new AxeBuilder({ page }).analyze();
+    const serious = violations.filter(({ impact }) => impact === 'serious' || impact === 'critical');
+    const listed = serious.map(
+      ({ id, nodes }) =>
+        `${what}, ${look}: ${id}: ${nodes.map(({ html }) => html.slice(0, 120)).join(' | ')}`,
+    );
+    expect(listed).toEqual([]);
+    if (screen !== undefined && backend !== 'native') await expectSameScreen(page, screen);
+  });
 }

@@ -15,8 +15,21 @@ const Operation* find_operation(const std::string& name) {
   return nullptr;
 }
 
+namespace {
+
+Json preset_list_json(const PresetList& list) {
+  Json presets = Json::array();
+  for (const Preset& preset : list.presets)
+    presets.push_back(
+        {{"name", preset.name}, {"title", preset.title}, {"parameters", preset.parameters}, {"hint", preset.hint}});
+  return {{"name", list.name}, {"title", list.title}, {"group", list.group}, {"help", list.help}, {"presets", presets}};
+}
+
+}  // namespace
+
 Json operation_json(const Operation& operation) {
-  Json inputs = Json::array(), properties = Json::object(), outputs = Json::array(), report = Json::array();
+  Json inputs = Json::array(), properties = Json::object(), presets = Json::array(), outputs = Json::array(),
+       report = Json::array();
   for (const InputInfo& input : operation.inputs)
     inputs.push_back({{"name", input.name},
                       {"label", input.label},
@@ -26,6 +39,7 @@ Json operation_json(const Operation& operation) {
                       {"folder_files", input.folder_files},
                       {"repeatable", input.repeatable},
                       {"help", input.help}});
+  for (const PresetList& list : operation.presets) presets.push_back(preset_list_json(list));
   for (const ParameterInfo& info : operation.parameters) properties[info.name] = parameter_schema(info);
   for (const OutputInfo& output : operation.outputs)
     outputs.push_back({{"name", output.name},
@@ -45,6 +59,7 @@ Json operation_json(const Operation& operation) {
             {"type", "object"},
             {"additionalProperties", false},
             {"properties", properties}}},
+          {"presets", presets},
           {"outputs", outputs},
           {"report", report}};
 }

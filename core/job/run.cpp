@@ -9,6 +9,7 @@
 
 #include "geometry/samples/samples.h"
 #include "job/catalog.h"
+#include "job/made_by.h"
 #include "job/progress/timed_host.h"
 
 namespace formwright {
@@ -195,6 +196,9 @@ JobResult run_job(const Json& message, const BlobSource& blobs, Session& session
     };
     OperationResult made = prepared({inputs, wants, session, context});
     if (const double memory = context.peak_memory_mb(); memory > 0) made.report["peak_memory_mb"] = memory;
+    const Json record = made_by(operation, parameters_of(message), inputs);
+    for (OutputBlob& output : made.outputs) note_made_by(output, record);
+    made.report["made_by"] = record;
     require_finite(made.report, "");
     for (const ReportField& field : operation.report)
       if (!field.old_name.empty() && made.report.contains(field.name))

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <set>
 
 #include "job/catalog.h"
 
@@ -46,6 +47,13 @@ FlagInfo parameter_flag(const ParameterInfo& info) {
     range = number(info.minimum) + " to " + number(info.maximum) + (info.unit.empty() ? "" : " " + info.unit) + ", ";
   flag.help = info.help + " [" + range + "default " + default_text(info) + "]";
   return flag;
+}
+
+FlagInfo preset_flag(const PresetList& list) {
+  std::vector<std::string> names;
+  for (const Preset& preset : list.presets) names.push_back(preset.name);
+  const std::string help = list.help + " Other flags count more. [" + joined(names, ", ") + "]";
+  return {dashed(list.name), "NAME", help, list.group, FlagValue::choice, names};
 }
 
 FlagInfo input_flag(const InputInfo& input) {
@@ -174,7 +182,14 @@ std::vector<FlagInfo> operation_flags(const Operation& operation) {
          "Folder in which simulations are kept and found again. Default: OUT/simulations. Several runs and computers may share it.",
          "Files", FlagValue::folder});
   flags.push_back({"--quiet", "", "Prints no progress.", "Files", FlagValue::no_value});
-  for (const ParameterInfo& info : operation.parameters) flags.push_back(parameter_flag(info));
+  // Presets stand before the first parameter of their group.
+  std::set<std::string> begun;
+  for (const ParameterInfo& info : operation.parameters) {
+    if (begun.insert(info.group).second)
+      for (const PresetList& list : operation.presets)
+        if (list.group == info.group) flags.push_back(preset_flag(list));
+    flags.push_back(parameter_flag(info));
+  }
   return flags;
 }
 

@@ -95,9 +95,21 @@ std::vector<FlagRule> rules_of(const Operation& operation) {
     for (const std::string& flag : names_of(info))
       rules.push_back({flag, info.kind == ParameterKind::boolean ? Value::optional : Value::one});
   for (const InputInfo& input : operation.inputs) rules.push_back({dashed(input.name)});
+  for (const PresetList& list : operation.presets) rules.push_back({dashed(list.name)});
   if (operation.keeps_results) rules.push_back({"--results"});
   if (takes_object(operation)) rules.push_back({"--object"});
   return rules;
+}
+
+/// The values of a preset chosen by name. Throws Error{invalid_input} naming the choices.
+const Json& values_of(const PresetList& list, const std::string& name) {
+  std::string names;
+  for (const Preset& preset : list.presets) {
+    if (preset.name == name) return preset.parameters;
+    names += (names.empty() ? "" : ", ") + preset.name;
+  }
+  throw Error(ErrorCode::invalid_input, dashed(list.name),
+              dashed(list.name) + " must be one of " + names + ", and is \"" + name + "\".");
 }
 
 /// The sentence for a word that is no flag of the operation.
@@ -139,6 +151,10 @@ ParsedCommand parse_command(const Operation& operation, const std::vector<std::s
     for (const std::string& flag : names_of(info))
       if (flags.contains(flag) && !parameters.contains(info.name))
         parameters[info.name] = parse_flag(info, last_of(flag));
+  for (const PresetList& list : operation.presets)
+    if (flags.contains(dashed(list.name)))
+      for (const auto& [name, value] : values_of(list, last_of(dashed(list.name))).items())
+        if (!parameters.contains(name)) parameters[name] = value;
   for (const InputInfo& input : operation.inputs)
     if (const auto given = flags.find(dashed(input.name)); given != flags.end())
       for (const std::string& value : given->second) add_file(input, value, command);

@@ -3,6 +3,7 @@
 
 #include <catch2/catch_test_macros.hpp>
 
+#include <algorithm>
 #include <set>
 #include <sstream>
 
@@ -61,6 +62,44 @@ TEST_CASE("Catalog.EveryNameStandsOnceAndEverythingIsSaid") {
       CHECK(fields.insert(field.name).second);
     }
   }
+}
+
+TEST_CASE("Catalog.PresetsHoldValuesThatTheirOperationTakes") {
+  for (const Operation& operation : operations()) {
+    std::set<std::string> flags;  // all that a command takes shares one list of flags
+    for (const ParameterInfo& info : operation.parameters) flags.insert(info.name);
+    for (const InputInfo& input : operation.inputs) flags.insert(input.name);
+    for (const PresetList& list : operation.presets) {
+      INFO(operation.name << " " << list.name);
+      CHECK(flags.insert(list.name).second);
+      CHECK(list.help.ends_with("."));
+      CHECK(std::any_of(operation.parameters.begin(), operation.parameters.end(),
+                        [&](const ParameterInfo& info) { return info.group == list.group; }));
+      REQUIRE(list.presets.size() >= 2);
+      std::set<std::string> names, titles;
+      for (const Preset& preset : list.presets) {
+        INFO(preset.name);
+        CHECK(names.insert(preset.name).second);
+        CHECK(titles.insert(preset.title).second);
+        CHECK((preset.hint.empty() || preset.hint.ends_with(".")));
+        CHECK_NOTHROW(operation.prepare(preset.parameters));
+        CHECK(preset.parameters.size() == list.presets.front().parameters.size());
+        for (const auto& [name, value] : preset.parameters.items())
+          CHECK(list.presets.front().parameters.contains(name));
+      }
+    }
+  }
+}
+
+// Whoever chooses nothing has what a name stands for, too, except for cloth, whose bending is computed.
+TEST_CASE("Catalog.TheFirstPresetHoldsTheDefaults") {
+  for (const char* name : {"thermoform-simulate", "mill-job"})
+    for (const PresetList& list : find_operation(name)->presets)
+      for (const auto& [parameter, value] : list.presets.front().parameters.items()) {
+        INFO(name << " " << list.name << " " << parameter);
+        for (const ParameterInfo& info : find_operation(name)->parameters)
+          if (info.name == parameter) CHECK(info.default_value == value);
+      }
 }
 
 #ifndef __EMSCRIPTEN__

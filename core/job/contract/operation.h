@@ -10,6 +10,7 @@
 #include "base/bytes.h"
 #include "base/context.h"
 #include "base/data/parameters.h"
+#include "base/data/presets.h"
 #include "job/contract/session.h"
 
 namespace formwright {
@@ -72,6 +73,7 @@ struct Operation {
       "formwright";  // of WebAssembly, with its code (wasm/CMakeLists.txt); natively all are in one program
   std::vector<InputInfo> inputs;
   std::vector<ParameterInfo> parameters;
+  std::vector<PresetList> presets;  // of values for them, to choose by name
   std::vector<OutputInfo> outputs;
   std::vector<ReportField> report;
   bool keeps_results = false;  // has expensive intermediate results that the host should keep (Context::keep_result)

@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "job/made_by.h"
 #include "job/operations/evidence/evidence_operations.h"
 #include "job/operations/evidence/evidence_registration_operations.h"
 #include "job/operations/fabrication/fabrication_operations.h"
@@ -14,29 +15,31 @@
 namespace formwright {
 
 std::vector<Operation> all_operations(Operation evidence_register) {
-  return {relief_operation(),
-          thermoform_simulate_operation(),
-          thermoform_texture_operation(),
-          thermoform_mould_operation(),
-          thermoform_compare_operation(),
-          evidence_pattern_operation(),
-          std::move(evidence_register),
-          evidence_calibrate_operation(),
-          evidence_diagnose_operation(),
-          evidence_diagnose_relief_operation(),
-          evidence_virtual_object_operation(),
-          zippable_design_operation(),
-          zippable_plan_operation(),
-          zippable_simulate_operation(),
-          zippable_baseline_operation(),
-          laser_job_operation(),
-          mill_job_operation(),
-          test_grid_operation(),
-          page_tiles_operation(),
-          import_operation(),
-          simplify_operation(),
-          subdivide_operation(),
-          convert_operation()};
+  std::vector<Operation> all = {relief_operation(),
+                                thermoform_simulate_operation(),
+                                thermoform_texture_operation(),
+                                thermoform_mould_operation(),
+                                thermoform_compare_operation(),
+                                evidence_pattern_operation(),
+                                std::move(evidence_register),
+                                evidence_calibrate_operation(),
+                                evidence_diagnose_operation(),
+                                evidence_diagnose_relief_operation(),
+                                evidence_virtual_object_operation(),
+                                zippable_design_operation(),
+                                zippable_plan_operation(),
+                                zippable_simulate_operation(),
+                                zippable_baseline_operation(),
+                                laser_job_operation(),
+                                mill_job_operation(),
+                                test_grid_operation(),
+                                page_tiles_operation(),
+                                import_operation(),
+                                simplify_operation(),
+                                subdivide_operation(),
+                                convert_operation()};
+  for (Operation& operation : all) operation.report.push_back(made_by_field());
+  return all;
 }
 
 }  // namespace formwright

@@ -85,11 +85,13 @@ struct ThermoformOptions : SheetEffects {
           parameter("vacuum_ramp_s", &ThermoformOptions::vacuum_ramp_s, "Vacuum builds up in", unit::seconds, 0, 5,
                     "Time that the vacuum takes to reach its full value. 0.2 s is usual; 0 applies it at once.")
               .group("Machine")
-              .slider(0, 1),
+              .slider(0, 1)
+              .advanced(),
           parameter("mould_speed_mm_per_s", &ThermoformOptions::mould_speed_mm_per_s, "Raise speed", unit::mm_per_s, 1,
                     2000, "Speed at which the platform carries the model up into the sheet.")
               .group("Machine")
-              .slider(10, 300),
+              .slider(10, 300)
+              .advanced(),
           parameter(
               "platform_travel_mm", &ThermoformOptions::platform_travel_mm, "Box depth", unit::mm, 1, 2000,
               "How far the platform starts below its top position. The model must be lower than this minus the sag of the sheet.")

@@ -114,6 +114,24 @@ export interface ReportField {
   readonly help?: string;
 }
 
+/** Values of an operation's parameters, to begin with. */
+interface Preset {
+  readonly name: string;
+  readonly title: string;
+  readonly parameters: JsonObject;
+  readonly hint: string;
+}
+
+/** Presets that all set the same parameters. */
+export interface PresetList {
+  readonly name: string;
+  readonly title: string;
+  readonly help: string;
+  /** Of the parameters beside which it stands. */
+  readonly group: string;
+  readonly presets: readonly Preset[];
+}
+
 export interface Operation {
   readonly name: string;
   readonly title: string;
@@ -122,6 +140,7 @@ export interface Operation {
   readonly module?: string;
   readonly inputs: readonly InputDeclaration[];
   readonly parameters: { readonly properties: Readonly<Record<string, ParameterSchema>> };
+  readonly presets?: readonly PresetList[];
   readonly outputs: readonly OutputDeclaration[];
   readonly report?: readonly ReportField[];
 }

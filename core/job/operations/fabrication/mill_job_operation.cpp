@@ -4,6 +4,7 @@
 
 #include "fabrication/writers/gcode_writer.h"
 #include "fabrication/mill/mill_plan.h"
+#include "fabrication/mill/mill_presets.h"
 #include "fabrication/toolpath/toolpath_preview.h"
 #include "formats/mesh_io.h"
 #include "formats/png/png16.h"
@@ -223,6 +224,7 @@ Operation mill_job_operation() {
   operation.inputs = mill_job_inputs();
   operation.outputs = mill_job_outputs();
   operation.report = mill_job_report_fields();
+  operation.presets = {mill_material_presets()};
   take_options<MillOptions>(operation, run_mill_job, [](const MillOptions& options) { read_no_go(options.no_go); });
   return operation;
 }

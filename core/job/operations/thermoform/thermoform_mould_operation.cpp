@@ -10,6 +10,7 @@
 #include "thermoform/mould/mould.h"
 #include "thermoform/mould/mould_parts.h"
 #include "thermoform/mould/solid_shapes.h"
+#include "thermoform/sheet/sheet_presets.h"
 
 namespace formwright {
 namespace {
@@ -270,6 +271,7 @@ Operation thermoform_mould_operation() {
   operation.inputs = {mould_input_info(), sheet_input_info(), profile_input_info()};
   operation.outputs = thermoform_mould_outputs();
   operation.report = thermoform_mould_report_fields();
+  operation.presets = sheet_presets();
   take_mergeable_options<ThermoformMouldOptions>(operation, run_mould);
   return operation;
 }

@@ -9,6 +9,7 @@
 #include "job/operations/thermoform/thermoform_input.h"
 #include "job/operations/thermoform/thermoform_operations.h"
 #include "thermoform/forming_glb.h"
+#include "thermoform/sheet/sheet_presets.h"
 
 namespace formwright {
 namespace {
@@ -220,6 +221,7 @@ Operation thermoform_simulate_operation() {
   operation.inputs = {mould_input_info(), setup_input_info(), profile_input_info()};
   operation.outputs = thermoform_simulate_outputs();
   operation.report = thermoform_simulate_report_fields();
+  operation.presets = sheet_presets();
   take_mergeable_options<ThermoformOptions>(operation, run_thermoform_simulate);
   return operation;
 }

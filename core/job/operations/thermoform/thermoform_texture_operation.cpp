@@ -8,6 +8,7 @@
 #include "job/operations/thermoform/thermoform_input.h"
 #include "thermoform/print/print_pages.h"
 #include "thermoform/print/texture_print.h"
+#include "thermoform/sheet/sheet_presets.h"
 
 namespace formwright {
 namespace {
@@ -208,6 +209,7 @@ Operation thermoform_texture_operation() {
   operation.inputs = thermoform_texture_inputs();
   operation.outputs = thermoform_texture_outputs();
   operation.report = thermoform_texture_report_fields();
+  operation.presets = sheet_presets();
   take_mergeable_options<ThermoformPrintOptions>(operation, run_texture);
   return operation;
 }

@@ -4,6 +4,7 @@
 #include "job/contract/model_input.h"
 #include "job/contract/operation_options.h"
 #include "job/operations/zippable/zippable_operation.h"
+#include "zippable/zipping/cloth_presets.h"
 #include "zippable/zipping/zipping_files.h"
 
 namespace formwright {
@@ -148,6 +149,7 @@ Operation zippable_simulate_operation() {
   operation.inputs = {design_input()};
   operation.outputs = zippable_simulate_outputs();
   operation.report = zippable_simulate_report_fields();
+  operation.presets = {cloth_presets()};
   take_options<ZippingOptions>(operation, run_zippable_simulate);
   return operation;
 }

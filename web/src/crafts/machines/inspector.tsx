@@ -42,6 +42,7 @@ export function Inspector({ session }: { readonly session: MachinesSession }) {
             errors={session.fieldErrors.value}
             onPreview={(name, value) => session.preview(name, value)}
             onCommit={() => session.services.projects.commit()}
+            onPreset={(values, label) => session.setParameters(values, label)}
             openGroups={openGroups(session, operation)}
           />
         ) : null}

@@ -22,6 +22,7 @@ import { browserMemory_mb, timeLine } from '../../shared/session/estimate';
 import { ModelRow } from '../../shared/panels/model_row';
 import { printInPlastic } from '../../shared/print/print_request';
 import { outputOf } from '../../shared/session/full_solve';
+import { howMadeItem } from '../../shared/session/how_made';
 import type { ReliefSession } from './relief_session';
 import type { SendToMill } from './send_relief';
 import { sendRelief } from './send_relief';
@@ -219,6 +220,7 @@ function ExportButton({ session, result, onSendToMill }: ExportProps) {
                 onSelect: () => void save(output),
               };
             }),
+            howMadeItem(session.title, result),
           ]}
         >
           <Icon name="chevronDown" small />

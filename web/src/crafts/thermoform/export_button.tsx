@@ -5,6 +5,7 @@ import { Button, formatBytes, Icon, Menu } from '../../ui';
 import { download, safeFileName } from '../../shared/session/download';
 import { printInPlastic, printOnPaper } from '../../shared/print/print_request';
 import { timeLine } from '../../shared/session/estimate';
+import { howMadeItem } from '../../shared/session/how_made';
 import { figure } from '../../shared/session/report';
 import { readyWorker } from '../../shared/session/services';
 import { bytesToSave } from './make_product';
@@ -151,6 +152,7 @@ export function MainButton({ session, onForm }: { session: ThermoformSession; on
                 onSelect: () => void save(session, one),
               };
             }),
+            howMadeItem(session.title, session.result.value, session.print.value, session.mould.value),
           ]}
         >
           <Icon name="chevronDown" small />

@@ -5,6 +5,7 @@ import { Button, formatBytes, Icon, Menu } from '../../ui';
 import { download, safeFileName } from '../../shared/session/download';
 import { timeLine } from '../../shared/session/estimate';
 import { outputOf, solveInFull } from '../../shared/session/full_solve';
+import { howMadeItem } from '../../shared/session/how_made';
 import { printOnPaper } from '../../shared/print/print_request';
 import { readyWorker } from '../../shared/session/services';
 import { planBytes, simulationBytes } from './make_product';
@@ -165,6 +166,7 @@ export function MainButton({ session, onSolve, onSendToMachine }: MainButtonProp
                 onSelect: () => void save(session, one),
               };
             }),
+            howMadeItem(session.title, result, session.plan.value, session.simulation.value),
           ]}
         >
           <Icon name="chevronDown" small />

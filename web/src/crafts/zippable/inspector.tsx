@@ -57,6 +57,7 @@ export function Inspector({ session, picture, onReplace, onSolve, onSendToMachin
           errors={session.fieldErrors.value}
           onPreview={(name, value) => session.preview(name, value)}
           onCommit={() => session.services.projects.commit()}
+          onPreset={(values, label) => session.setParameters(values, label)}
           groupHead={{ Ribbon: null, Parts: <PartList session={session} /> }}
           automatic={automaticValues(session)}
           openGroups={openGroups(session)}

@@ -4,6 +4,7 @@ import type { ComponentChildren } from 'preact';
 import { useId, useState } from 'preact/hooks';
 import type { Json, JsonObject, Operation, ParameterSchema } from '../../jobs/contract';
 import { Icon, Parameter, Segmented, Switch, tipHandlers } from '../../ui';
+import { PresetChoice } from './preset_choice';
 import { VectorField } from './vector_field';
 
 export interface ParameterPanelProps {
@@ -16,6 +17,8 @@ export interface ParameterPanelProps {
   readonly onCommit: () => void;
   /** Put in front of a group's parameters. */
   readonly groupHead?: Readonly<Record<string, ComponentChildren>>;
+  /** Takes the values of a preset; left out: no presets are offered. */
+  readonly onPreset?: (values: JsonObject, label: string) => void;
   /** What automatic values came to. */
   readonly automatic?: Readonly<Record<string, number>>;
   /** Groups that stand open; left out: all. The others are folded, as the advanced parameters are. */
@@ -44,6 +47,7 @@ export function ParameterPanel(props: ParameterPanelProps) {
         <section key={title} class="section" aria-label={title || 'Parameters'}>
           {title ? <h3>{title}</h3> : null}
           {props.groupHead?.[title]}
+          <Presets group={title} panel={props} />
           {members.map((entry) => (
             <Control key={entry[0]} entry={entry} {...props} />
           ))}
@@ -52,6 +56,20 @@ export function ParameterPanel(props: ParameterPanelProps) {
       {folded.map(([title, members]) =>
         members.length > 0 ? <Folded key={title} title={title} members={members} panel={props} /> : null,
       )}
+    </>
+  );
+}
+
+function Presets({ group, panel }: { readonly group: string; readonly panel: ParameterPanelProps }) {
+  const { operation, parameters, onPreset } = panel;
+  if (!onPreset) return null;
+  return (
+    <>
+      {(operation.presets ?? [])
+        .filter((list) => list.group === group)
+        .map((list) => (
+          <PresetChoice key={list.name} {...{ list, operation, parameters }} onChoose={onPreset} />
+        ))}
     </>
   );
 }
@@ -81,6 +99,7 @@ function Folded({ title, members, panel }: FoldedProps) {
         <span>{members.length}</span>
       </button>
       <section id={id} class="section" hidden={!open} aria-label={title}>
+        {open ? <Presets group={title} panel={panel} /> : null}
         {open ? members.map((entry) => <Control key={entry[0]} entry={entry} {...panel} />) : null}
       </section>
     </>

@@ -19,7 +19,7 @@ export interface RoomWithProducts extends RoomDocument {
   readonly products: readonly Product[];
 }
 
-/** An operation with the parameters of those that go on from its result. */
+/** An operation with the parameters and presets of those that go on from its result. */
 export function offeredTogether(
   catalog: Catalog,
   first: string,
@@ -27,11 +27,14 @@ export function offeredTogether(
 ): Operation | null {
   const operation = findOperation(catalog, first);
   if (operation === undefined) return null;
-  const others = further.map((name) => findOperation(catalog, name)?.parameters.properties);
+  const all = [operation, ...further.flatMap((name) => findOperation(catalog, name) ?? [])];
+  const others = all.map(({ parameters }) => parameters.properties);
   const own = operation.parameters.properties;
   // Where both know a parameter the first one's declaration counts; its own come first, as they are met.
   const properties = Object.assign({ ...own }, ...others, own) as typeof own;
-  return { ...operation, parameters: { properties } };
+  const presets = all.flatMap((one) => one.presets ?? []);
+  const named = new Map(presets.map((list) => [list.name, list]));
+  return { ...operation, parameters: { properties }, presets: [...named.values()] };
 }
 
 export function productOf(

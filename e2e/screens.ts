@@ -65,6 +65,8 @@ export async function compare(page: Page, before: Buffer | null): Promise<Compar
 
 /** Fails where the page does not look as it was kept; `name` is the screen's. */
 export async function expectSameScreen(page: Page, name: string): Promise<void> {
+  await page.mouse.move(0, 0); // no tip lies over the page
+  await expect(page.locator('.tip')).toHaveCount(0);
   const dark = await page.evaluate(() => matchMedia('(prefers-color-scheme: dark)').matches);
   const file = `${name}_${dark ? 'dark' : 'light'}_${page.viewportSize()?.width ?? 0}.webp`;
   const before = existsSync(join(kept, file)) ? readFileSync(join(kept, file)) : null;

@@ -33,9 +33,7 @@ test('from the sample star to a finished laser job', async ({ page }) => {
   await page.getByRole('button', { name: 'Make the ribbon', exact: true }).click();
   await expect(strip(page, 'Ribbon unfolded')).toBeVisible({ timeout: 150_000 });
   await page.getByRole('radio', { name: 'Sheets to cut' }).click();
-  await page.getByRole('textbox', { name: 'Sheet width' }).fill('300');
-  await page.getByRole('textbox', { name: 'Sheet width' }).press('Enter');
-  await expect(page.getByRole('img', { name: / of 300 × 300\smm; / })).toBeVisible();
+  await expect(page.getByRole('img', { name: / of 400 × 400\smm; / })).toBeVisible(); // the laser's bed
   const send = page.getByRole('button', { name: /Send to a machine/ });
   await send.click();
   const first = page.getByRole('menuitem', { name: 'Sheet 1' });

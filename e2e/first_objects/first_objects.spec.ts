@@ -178,8 +178,6 @@ test('laser', async ({ page, counter }) => {
   await setLaserSpeeds(page);
   counter.begin();
   await page.getByRole('radio', { name: 'Sheets to cut' }).click();
-  await button(page, /Send to a machine/).click();
-  await button(page, 'Lay out again for 400 × 400').click();
   await expect(page.getByRole('img', { name: /1 sheet of 400 × 400/ })).toBeVisible();
   await button(page, /Send to a machine/).click();
   await expect(strip(page, 'Job ready')).toBeVisible();

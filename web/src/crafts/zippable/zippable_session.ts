@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the zippable page does beyond opening models: designs a ribbon for a stand-in at every change, shows what was
 // designed for the whole model.
+import type { ReadonlySignal } from '@preact/signals';
 import { computed, effect, signal, untracked } from '@preact/signals';
 import type { Result } from '../../jobs/backend';
-import type { JobInput, Operation, Report } from '../../jobs/contract';
+import type { JobInput, Json, JsonObject, Operation, Report } from '../../jobs/contract';
 import { findOperation } from '../../jobs/contract';
 import type { Film } from '../../jobs/glb';
 import { readFilm, readPolylines } from '../../jobs/mesh_reader';
+import type { LaserSheet } from '../../machines/laser_sheet';
+import { sameBed } from '../../machines/laser_sheet';
 import type { CraftResult } from '../../shared/session/craft_document';
-import { known } from '../../shared/session/craft_document';
+import { inForce, known } from '../../shared/session/craft_document';
 import type { Measured } from '../../shared/session/estimate';
 import { expectedTimes } from '../../shared/session/estimate';
 import { bytesOf } from '../../shared/session/import_model';
@@ -30,8 +33,19 @@ import { cutByParts } from './ribbon/cut_ribbon';
 import { PartBorders } from './ribbon/part_borders';
 import type { PartDistortion } from './ribbon/part_map';
 import { distortionOfParts, partsOfTriangles, VertexGrid } from './ribbon/part_map';
+import { hasPlan, planParameters } from './sheet_size';
 import type { ZippableDocument } from './zippable_document';
-import { currentResult, design, drawnOn, offered, planning, simulating, zippable } from './zippable_document';
+import {
+  currentResult,
+  design,
+  drawnOn,
+  layOutFor,
+  noteLaser,
+  offered,
+  planning,
+  simulating,
+  zippable,
+} from './zippable_document';
 
 /** A model divided and parameterised; the same object for as many designs as are made on it. */
 export interface DividedModel {
@@ -100,17 +114,26 @@ export class ZippableSession extends RoomSession<ZippableDocument> {
   readonly shown = this.previews.shown;
   /** What plans are made of; null while the design is a preview. */
   readonly designFile = computed(() => this.result.value?.outputs['design.json'] ?? null);
-  readonly plan = computed(() => this.#madeOfDesign(planning));
-  readonly simulation = computed(() => this.#madeOfDesign(simulating));
+  /** What plans are made with. */
+  readonly planParameters = computed((): JsonObject => {
+    const operation = this.operationNamed(planning);
+    return operation ? planParameters(operation, this.document.value, this.laser.value) : {};
+  });
+  readonly plan = computed(() => this.#madeOfDesign(planning, this.planParameters.value));
+  readonly simulation = computed(() => this.#madeOfDesign(simulating, this.document.value.parameters));
   /** How the simulated cloth went, of the design in force. */
   readonly film = signal<Film | null>(null);
   /** The report of the previewed ribbon with its distances from the model; null until it rests. */
   readonly distances = signal<Report | null>(null);
   readonly #previewed = signal<Measured | null>(null);
   #divided: DividedModel | null = null;
+  /** The chosen laser; null while it is not known. */
+  readonly laser: ReadonlySignal<LaserSheet | null>;
 
-  constructor(services: Services) {
+  constructor(services: Services, laser: ReadonlySignal<LaserSheet | null> = signal(null)) {
     super(services, zippable);
+    this.laser = laser;
+    this.#followLaser();
     this.previews.startFollowing();
     this.#measureLater();
     this.#followSimulation();
@@ -124,9 +147,54 @@ export class ZippableSession extends RoomSession<ZippableDocument> {
     });
   }
 
-  #madeOfDesign(operation: string): Product | null {
+  #madeOfDesign(operation: string, parameters: JsonObject): Product | null {
     const { value } = this.designFile;
-    return productOf(this.document.value, value?.blob ?? null, this.operationNamed(operation));
+    const { products } = this.document.value;
+    return productOf({ products, parameters }, value?.blob ?? null, this.operationNamed(operation));
+  }
+
+  /** Of a plan, what the laser says included. */
+  planValue(name: string): Json {
+    const operation = this.operationNamed(planning);
+    return operation ? inForce(operation, this.planParameters.value, name) : null;
+  }
+
+  /** Another laser is chosen, or its bed is changed, while this project is open: what is laid out follows. Opening a project while
+   *  another laser is chosen changes nothing. Nor does another kerf: a sheet that is still to be cut must go with those that
+   *  are cut already, and the laser's job corrects the difference. */
+  #followLaser(): void {
+    let [project, before] = ['', null as LaserSheet | null];
+    effect(() => {
+      const chosen = this.laser.value;
+      const { id } = this.services.projects.document.value;
+      untracked(() => {
+        const other = id === project && before !== null && chosen !== null && !sameBed(before, chosen);
+        [project, before] = [id, chosen];
+        if (other && chosen !== null && hasPlan(this.document.value))
+          this.services.projects.do(noteLaser(chosen));
+      });
+    });
+  }
+
+  /** Before a plan is made: from now on the project keeps the laser that it is laid out for. */
+  noteLaser(): void {
+    const chosen = this.laser.value;
+    if (chosen !== null && !hasPlan(this.document.value)) this.services.projects.do(noteLaser(chosen));
+  }
+
+  /** Sheets as large as the chosen laser's bed, whatever was set by hand. */
+  layOutForLaser(): void {
+    const chosen = this.laser.value;
+    if (chosen === null) return;
+    this.services.projects.do(layOutFor(chosen, `Lay out for ${chosen.laser}`));
+    this.services.projects.commit();
+  }
+
+  /** The same for a bed of this size, as the machine that did not take a sheet has it. */
+  layOutForBed([bed_x_mm, bed_y_mm]: readonly [number, number]): void {
+    const chosen = this.laser.value;
+    if (chosen?.bed_x_mm === bed_x_mm && chosen.bed_y_mm === bed_y_mm) this.layOutForLaser();
+    else this.setParameters({ bed_x_mm, bed_y_mm }, `Lay out for ${bed_x_mm} × ${bed_y_mm} mm`);
   }
 
   #followSimulation(): void {

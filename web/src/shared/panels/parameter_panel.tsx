@@ -14,7 +14,7 @@ export interface ParameterPanelProps {
   readonly errors: Readonly<Record<string, string>>;
   readonly onPreview: (name: string, value: Json) => void;
   readonly onCommit: () => void;
-  /** Put in front of a group's parameters. */
+  /** Put in front of a group's parameters, also where that is folded. */
   readonly groupHead?: Readonly<Record<string, ComponentChildren>>;
   /** What automatic values came to. */
   readonly automatic?: Readonly<Record<string, number>>;
@@ -81,6 +81,7 @@ function Folded({ title, members, panel }: FoldedProps) {
         <span>{members.length}</span>
       </button>
       <section id={id} class="section" hidden={!open} aria-label={title}>
+        {open ? panel.groupHead?.[title] : null}
         {open ? members.map((entry) => <Control key={entry[0]} entry={entry} {...panel} />) : null}
       </section>
     </>

@@ -168,7 +168,7 @@ async function setLaserSpeeds(page: Page): Promise<void> {
   await page.getByRole('link', { name: 'Zippable', exact: true }).click();
 }
 
-/** Practice machines take as long as real ones: jobs run to their end in `npm run actions` and `make test-all` only. */
+/** At its own speed a practice machine takes as long as a real one: jobs run to their end in `npm run actions` and `make test-all` only. */
 const inFull = process.env['FORMWRIGHT_LONG_TESTS'] === 'ON';
 
 test('laser', async ({ page, counter }) => {

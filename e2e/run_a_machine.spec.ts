@@ -126,7 +126,7 @@ test('a practice job is sped up by keyboard; its time stays that of a real machi
   await makeReady(page);
   const speeds = page.getByRole('radiogroup', { name: 'Speed of practice jobs' });
   await expect(speeds.getByRole('radio', { name: '1×', exact: true })).toBeChecked();
-  await expect(speeds).toHaveAccessibleDescription(/^Times are those of a real machine/);
+  await expect(speeds).toHaveAccessibleDescription(/^Job time and log are those of a real machine/);
   await startIt(page);
   const start_ms = Date.now();
   await speeds.getByRole('radio', { name: '1×', exact: true }).focus();
@@ -144,7 +144,8 @@ test('a practice job is sped up by keyboard; its time stays that of a real machi
   await expect(page.getByText(/^Practice laser, practice, /)).toBeVisible();
   await expect(page.getByText(new RegExp(`done after ${ofMachine_s}\\ss`))).toBeVisible();
 
-  // On a phone it fits, and Stop is obeyed at once.
+  // On a phone it fits, and Stop is obeyed at once: in a job of three minutes.
+  await setSpeed(page, 'Cut', '1');
   await page.setViewportSize({ width: 390, height: 844 });
   const box = await speeds.boundingBox();
   expect(box?.x).toBeGreaterThanOrEqual(0);
@@ -156,7 +157,7 @@ test('a practice job is sped up by keyboard; its time stays that of a real machi
     page
       .getByRole('contentinfo')
       .locator('strong')
-      .getByText(/^Job stopped at \d %$/),
+      .getByText(/^Job stopped at \d+ %$/),
   ).toBeVisible({ timeout: 3000 });
   await button(page, 'Disconnect').click();
   await expect(speeds).toHaveCount(0);

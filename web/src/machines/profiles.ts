@@ -92,7 +92,7 @@ export const isPractice = ({ id }: MachineProfile): boolean =>
   id === practiceLaser.id || id === practiceMill.id;
 
 export const isMill = ({ options }: MachineProfile): boolean => options['tool'] === 'mill';
-export const isLaser = ({ options }: MachineProfile): boolean => (options['tool'] ?? 'laser') === 'laser';
+const isLaser = ({ options }: MachineProfile): boolean => (options['tool'] ?? 'laser') === 'laser';
 
 interface Kept {
   readonly profiles: readonly MachineProfile[];

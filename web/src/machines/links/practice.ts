@@ -9,7 +9,7 @@ const tick_s = 0.05;
 const atRest: readonly string[] = ['paused', 'door', 'alarm', 'sleep'];
 
 /** Does the machine work off a job now? */
-export const movesOn = ({ job, phase }: MachineState): boolean =>
+const movesOn = ({ job, phase }: MachineState): boolean =>
   job !== null && job.ended === null && !atRest.includes(phase);
 
 export class Practice {

@@ -9,7 +9,7 @@ export const fastest = Infinity;
  *  machine does not run out of lines. */
 const slice_s = 0.02;
 /** A page that slept does not make up for it: the machine slept, too. */
-const longest_gap_s = 0.25;
+const longest_gap_s = 1;
 /** Of the worker's time at once, so that a stop is heard in between. */
 const budget_s = 0.012;
 
@@ -44,8 +44,8 @@ export class PracticeClock {
     return this.#pace.value;
   }
 
-  /** Lets the time pass that has passed on the wall since the last call. What does not fit into the budget is left out: where the
-   *  page cannot keep up, the machine is slower than it was asked to be. */
+  /** Lets the time pass that has passed on the wall since the last call. What does not fit into the budget waits for the next call, up
+   *  to a second of it: where the page cannot keep up, the machine is slower than it was asked to be. */
   pass({ act, isFast }: PracticeTime): void {
     const start_s = this.#wall_s();
     let left_s = Math.min(Math.max(0, start_s - this.#wallBefore_s), longest_gap_s);
@@ -56,7 +56,9 @@ export class PracticeClock {
       left_s -= step_s / speed;
       this.#now_s += step_s;
       act(this.#now_s);
-      if (this.#wall_s() - start_s > budget_s) break;
+      if (this.#wall_s() - start_s <= budget_s) continue;
+      if (speed !== fastest) this.#wallBefore_s -= left_s;
+      break;
     }
     this.#measurePace(start_s);
   }

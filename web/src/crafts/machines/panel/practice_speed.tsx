@@ -30,7 +30,7 @@ export function PracticeSpeed({ session }: { readonly session: MachinesSession }
         }
       />
       <p id={`${id}-help`} class="hint">
-        Times are those of a real machine. Stop, pauses and moves by hand are not sped up.
+        Job time and log are those of a real machine. Stop, pauses and moves by hand are not sped up.
       </p>
     </div>
   );

@@ -6,7 +6,7 @@ import { backend, expect, openPage, strip, test } from './page';
 test.skip(backend !== 'wasm', 'the page does the same with the worker');
 
 test('a sheet that is larger than the bed is laid out again for it', async ({ page }) => {
-  test.setTimeout(300_000);
+  test.setTimeout(420_000);
   await openPage(page);
   await page.getByRole('link', { name: 'Zippable', exact: true }).click();
   await page.locator('.gallery button', { hasText: 'Star' }).click();
@@ -22,7 +22,7 @@ test('a sheet that is larger than the bed is laid out again for it', async ({ pa
   const width = page.getByRole('textbox', { name: 'Sheet width' });
   await width.fill('600');
   await width.press('Enter');
-  await expect(page.getByRole('img', { name: / of 600 × 400\smm; / })).toBeVisible({ timeout: 60_000 });
+  await expect(page.getByRole('img', { name: / of 600 × 400\smm; / })).toBeVisible({ timeout: 150_000 });
   await page.getByRole('button', { name: /Send to a machine/ }).click();
   const first = page.getByRole('menuitem', { name: 'Sheet 1', exact: true });
   await first.click();
@@ -32,7 +32,7 @@ test('a sheet that is larger than the bed is laid out again for it', async ({ pa
   });
   await expect(page.getByText(/shrink/)).toHaveCount(0);
   await button(page, 'Lay out again for 400 × 400').click();
-  await expect(page.getByRole('img', { name: / of 400 × 400\smm; / })).toBeVisible({ timeout: 60_000 });
+  await expect(page.getByRole('img', { name: / of 400 × 400\smm; / })).toBeVisible({ timeout: 150_000 });
   await page.getByRole('button', { name: /Send to a machine/ }).click();
   await first.click();
   await expect(strip(page, 'Job ready')).toBeVisible({ timeout: 60_000 });

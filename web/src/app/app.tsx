@@ -185,7 +185,7 @@ export function App({ services, sessions }: AppProps) {
           session={sessions.machines}
           onChooseFile={chooseFile}
           onLayOutAgain={(bed_mm) => {
-            sessions.zippable.layOutForBed(bed_mm);
+            sessions.zippable.sheets.useBed(bed_mm);
             flatView.value = 'sheets';
             go('zippable');
           }}

@@ -8,7 +8,6 @@ import { MainButton } from './export_button';
 import { Figures } from './figures';
 import { PartList } from './drawing/part_list';
 import type { SendToMachine } from './ribbon/send_sheet';
-import { automaticSizes } from './sheet_size';
 import { SheetSize } from './sheet_size_row';
 import { flatView } from './views';
 import { design, planning } from './zippable_document';
@@ -24,8 +23,7 @@ export interface InspectorProps {
 
 /** What the core chose where the maker left it open. */
 function automaticValues(session: ZippableSession): Record<string, number> {
-  const plan = session.operationNamed(planning);
-  const sizes = plan ? automaticSizes(plan, session.document.value, session.laser.value) : {};
+  const sizes = session.sheets.automatic.value;
   const shown = session.shown.value;
   if (shown === null) return sizes;
   const windings = shown.design.parts.map((part) => part.windings);

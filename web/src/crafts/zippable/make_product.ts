@@ -18,7 +18,7 @@ async function madeOf(
   if (design === null || operation === undefined) return null;
   const inputs = { design: { sha256: design.blob, file_name: 'design.json' } };
   const planned = operationName === planning;
-  if (planned) session.noteLaser();
+  if (planned) session.sheets.note();
   return await productBytes(session, {
     operation,
     from: design.blob,
@@ -26,7 +26,7 @@ async function madeOf(
     output,
     beside,
     label,
-    ...(planned ? { parameters: session.planParameters.value } : {}),
+    ...(planned ? { parameters: session.sheets.parameters.value } : {}),
   });
 }
 

@@ -91,7 +91,7 @@ function room(chosen: LaserSheet | null = practice) {
 describe('the sheets of a cutting plan', () => {
   it('are as large as the chosen laser’s bed, with the kerf of its material', async () => {
     const { inUse, session, makePlan } = room(null);
-    expect(session.planParameters.value).toEqual({}); // nothing is known of lasers yet
+    expect(session.sheets.parameters.value).toEqual({}); // nothing is known of lasers yet
     inUse.value = { ...practice, material: 'Felt 3 mm', kerf_mm: 0.25 };
     expect(words(session)).toBe('Practice laser: 400 × 400 mm');
     expect(await makePlan()).toEqual({ bed_x_mm: 400, bed_y_mm: 400, kerf_mm: 0.25 });
@@ -106,12 +106,12 @@ describe('the sheets of a cutting plan', () => {
     inUse.value = workshop; // where 600 is the laser's, too
     session.setParameters({ margin_mm: 6 }, 'Set');
     inUse.value = large;
-    expect(session.planParameters.value).toEqual({ bed_y_mm: 900, margin_mm: 6 });
-    session.layOutForLaser();
-    expect(session.planParameters.value).toEqual({ bed_x_mm: 1300, bed_y_mm: 900, margin_mm: 6 });
+    expect(session.sheets.parameters.value).toEqual({ bed_y_mm: 900, margin_mm: 6 });
+    session.sheets.useLaser();
+    expect(session.sheets.parameters.value).toEqual({ bed_x_mm: 1300, bed_y_mm: 900, margin_mm: 6 });
     expect(projects.undoLabel.value).toBe('Lay out for Large');
     projects.undo();
-    expect(session.planParameters.value).toEqual({ bed_y_mm: 900, margin_mm: 6 });
+    expect(session.sheets.parameters.value).toEqual({ bed_y_mm: 900, margin_mm: 6 });
     projects.undo();
     projects.undo();
     expect(words(session)).toBe('Large: 1300 × 900 mm');
@@ -134,12 +134,12 @@ describe('the sheets of a cutting plan', () => {
     const first = projects.document.value.id;
     await projects.create();
     inUse.value = large;
-    expect(session.planParameters.value).toEqual({ bed_x_mm: 1300, bed_y_mm: 900 });
+    expect(session.sheets.parameters.value).toEqual({ bed_x_mm: 1300, bed_y_mm: 900 });
     await projects.open(first);
     await settled();
     expect(session.plan.value).toEqual(kept);
     expect(words(session)).toBe('Practice laser: 400 × 400 mm');
-    session.layOutForLaser();
+    session.sheets.useLaser();
     expect(session.plan.value).toBeNull();
     projects.undo();
     expect(session.plan.value).toEqual(kept);
@@ -153,16 +153,16 @@ describe('the sheets of a cutting plan', () => {
     const later = new ZippableSession(session.services, signal(practice));
     expect(later.plan.value).not.toBeNull();
     expect(words(later)).toBe('600 × 300 mm, as laid out before');
-    later.layOutForLaser();
-    expect(later.planParameters.value).toEqual({ bed_x_mm: 400, bed_y_mm: 400 });
+    later.sheets.useLaser();
+    expect(later.sheets.parameters.value).toEqual({ bed_x_mm: 400, bed_y_mm: 400 });
   });
 
   it('are laid out for the machine that did not take one: its laser’s, or by hand for another', () => {
     const { session } = room();
     session.setParameters({ bed_x_mm: 700, bed_y_mm: 500 }, 'Set');
-    session.layOutForBed([400, 400]);
+    session.sheets.useBed([400, 400]);
     expect(words(session)).toBe('Practice laser: 400 × 400 mm');
-    session.layOutForBed([350, 250]);
+    session.sheets.useBed([350, 250]);
     expect(words(session)).toBe('Set by hand: 350 × 250 mm');
   });
 });

@@ -3,7 +3,7 @@
 import type { LaserSheet } from '../../machines/laser_sheet';
 import { sameBed } from '../../machines/laser_sheet';
 import { Button, formatNumber, withUnit } from '../../ui';
-import { isSetByHand, laserOf } from './sheet_size';
+import { isSetByHand } from './sheet_size';
 import type { ZippableSession } from './zippable_session';
 
 /** "400 × 400 mm". */
@@ -14,22 +14,22 @@ const kerf = (mm: unknown): string => withUnit(formatNumber(Number(mm), 2), 'mm'
 
 /** "Practice laser: 400 × 400 mm", or what is there instead of it. */
 export function sheetWords(session: ZippableSession): string {
-  const project = session.document.value;
-  const laser = laserOf(project, session.laser.value);
-  const inForce = size(session.planValue('bed_x_mm'), session.planValue('bed_y_mm'));
-  if (isSetByHand(project)) return `Set by hand: ${inForce}`;
+  const { sheets } = session;
+  const laser = sheets.laser.value;
+  const inForce = size(sheets.value('bed_x_mm'), sheets.value('bed_y_mm'));
+  if (isSetByHand(session.document.value)) return `Set by hand: ${inForce}`;
   return laser ? bedOf(laser) : `${inForce}, as laid out before`;
 }
 
 export function SheetSize({ session }: { readonly session: ZippableSession }) {
+  const { sheets } = session;
   const project = session.document.value;
-  const chosen = session.laser.value;
-  const laser = laserOf(project, chosen);
+  const [chosen, laser] = [sheets.chosen.value, sheets.laser.value];
   const byHand = isSetByHand(project);
   const { kerf_mm } = project.parameters;
   const ownKerf = typeof kerf_mm === 'number';
   const kerfDiffers =
-    !ownKerf && chosen !== null && chosen.kerf_mm !== null && chosen.kerf_mm !== session.planValue('kerf_mm');
+    !ownKerf && chosen !== null && chosen.kerf_mm !== null && chosen.kerf_mm !== sheets.value('kerf_mm');
   const offered =
     chosen && (byHand || laser === null || !sameBed(laser, chosen) || kerfDiffers) ? chosen : null;
   return (
@@ -42,24 +42,17 @@ export function SheetSize({ session }: { readonly session: ZippableSession }) {
       ) : null}
       <div class="row">
         {offered ? (
-          <Button size="small" onClick={() => session.layOutForLaser()}>
+          <Button size="small" onClick={() => sheets.useLaser()}>
             Use {bedOf(offered)}
             {kerfDiffers ? `, kerf ${kerf(offered.kerf_mm)}` : ''}
           </Button>
         ) : null}
         {byHand ? null : (
-          <Button size="small" kind="quiet" onClick={() => useAnother(session)}>
+          <Button size="small" kind="quiet" onClick={() => sheets.setByHand()}>
             Use another size
           </Button>
         )}
       </div>
     </div>
   );
-}
-
-/** The size in force becomes one that is set by hand, to be changed in the fields below. */
-function useAnother(session: ZippableSession): void {
-  const [bed_x_mm, bed_y_mm] = ['bed_x_mm', 'bed_y_mm'].map((name) => session.planValue(name));
-  if (typeof bed_x_mm === 'number' && typeof bed_y_mm === 'number')
-    session.setParameters({ bed_x_mm, bed_y_mm }, 'Use another sheet size');
 }

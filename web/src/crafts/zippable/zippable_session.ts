@@ -4,14 +4,13 @@
 import type { ReadonlySignal } from '@preact/signals';
 import { computed, effect, signal, untracked } from '@preact/signals';
 import type { Result } from '../../jobs/backend';
-import type { JobInput, Json, JsonObject, Operation, Report } from '../../jobs/contract';
+import type { JobInput, JsonObject, Operation, Report } from '../../jobs/contract';
 import { findOperation } from '../../jobs/contract';
 import type { Film } from '../../jobs/glb';
 import { readFilm, readPolylines } from '../../jobs/mesh_reader';
 import type { LaserSheet } from '../../machines/laser_sheet';
-import { sameBed } from '../../machines/laser_sheet';
 import type { CraftResult } from '../../shared/session/craft_document';
-import { inForce, known } from '../../shared/session/craft_document';
+import { known } from '../../shared/session/craft_document';
 import type { Measured } from '../../shared/session/estimate';
 import { expectedTimes } from '../../shared/session/estimate';
 import { bytesOf } from '../../shared/session/import_model';
@@ -33,19 +32,9 @@ import { cutByParts } from './ribbon/cut_ribbon';
 import { PartBorders } from './ribbon/part_borders';
 import type { PartDistortion } from './ribbon/part_map';
 import { distortionOfParts, partsOfTriangles, VertexGrid } from './ribbon/part_map';
-import { hasPlan, planParameters } from './sheet_size';
+import { LaserSheets } from './laser_sheets';
 import type { ZippableDocument } from './zippable_document';
-import {
-  currentResult,
-  design,
-  drawnOn,
-  layOutFor,
-  noteLaser,
-  offered,
-  planning,
-  simulating,
-  zippable,
-} from './zippable_document';
+import { currentResult, design, drawnOn, offered, planning, simulating, zippable } from './zippable_document';
 
 /** A model divided and parameterised; the same object for as many designs as are made on it. */
 export interface DividedModel {
@@ -114,12 +103,7 @@ export class ZippableSession extends RoomSession<ZippableDocument> {
   readonly shown = this.previews.shown;
   /** What plans are made of; null while the design is a preview. */
   readonly designFile = computed(() => this.result.value?.outputs['design.json'] ?? null);
-  /** What plans are made with. */
-  readonly planParameters = computed((): JsonObject => {
-    const operation = this.operationNamed(planning);
-    return operation ? planParameters(operation, this.document.value, this.laser.value) : {};
-  });
-  readonly plan = computed(() => this.#madeOfDesign(planning, this.planParameters.value));
+  readonly plan = computed(() => this.#madeOfDesign(planning, this.sheets.parameters.value));
   readonly simulation = computed(() => this.#madeOfDesign(simulating, this.document.value.parameters));
   /** How the simulated cloth went, of the design in force. */
   readonly film = signal<Film | null>(null);
@@ -127,13 +111,12 @@ export class ZippableSession extends RoomSession<ZippableDocument> {
   readonly distances = signal<Report | null>(null);
   readonly #previewed = signal<Measured | null>(null);
   #divided: DividedModel | null = null;
-  /** The chosen laser; null while it is not known. */
-  readonly laser: ReadonlySignal<LaserSheet | null>;
+  /** How large the sheets are that plans are laid out for. */
+  readonly sheets: LaserSheets;
 
   constructor(services: Services, laser: ReadonlySignal<LaserSheet | null> = signal(null)) {
     super(services, zippable);
-    this.laser = laser;
-    this.#followLaser();
+    this.sheets = new LaserSheets(this, laser);
     this.previews.startFollowing();
     this.#measureLater();
     this.#followSimulation();
@@ -151,50 +134,6 @@ export class ZippableSession extends RoomSession<ZippableDocument> {
     const { value } = this.designFile;
     const { products } = this.document.value;
     return productOf({ products, parameters }, value?.blob ?? null, this.operationNamed(operation));
-  }
-
-  /** Of a plan, what the laser says included. */
-  planValue(name: string): Json {
-    const operation = this.operationNamed(planning);
-    return operation ? inForce(operation, this.planParameters.value, name) : null;
-  }
-
-  /** Another laser is chosen, or its bed is changed, while this project is open: what is laid out follows. Opening a project while
-   *  another laser is chosen changes nothing. Nor does another kerf: a sheet that is still to be cut must go with those that
-   *  are cut already, and the laser's job corrects the difference. */
-  #followLaser(): void {
-    let [project, before] = ['', null as LaserSheet | null];
-    effect(() => {
-      const chosen = this.laser.value;
-      const { id } = this.services.projects.document.value;
-      untracked(() => {
-        const other = id === project && before !== null && chosen !== null && !sameBed(before, chosen);
-        [project, before] = [id, chosen];
-        if (other && chosen !== null && hasPlan(this.document.value))
-          this.services.projects.do(noteLaser(chosen));
-      });
-    });
-  }
-
-  /** Before a plan is made: from now on the project keeps the laser that it is laid out for. */
-  noteLaser(): void {
-    const chosen = this.laser.value;
-    if (chosen !== null && !hasPlan(this.document.value)) this.services.projects.do(noteLaser(chosen));
-  }
-
-  /** Sheets as large as the chosen laser's bed, whatever was set by hand. */
-  layOutForLaser(): void {
-    const chosen = this.laser.value;
-    if (chosen === null) return;
-    this.services.projects.do(layOutFor(chosen, `Lay out for ${chosen.laser}`));
-    this.services.projects.commit();
-  }
-
-  /** The same for a bed of this size, as the machine that did not take a sheet has it. */
-  layOutForBed([bed_x_mm, bed_y_mm]: readonly [number, number]): void {
-    const chosen = this.laser.value;
-    if (chosen?.bed_x_mm === bed_x_mm && chosen.bed_y_mm === bed_y_mm) this.layOutForLaser();
-    else this.setParameters({ bed_x_mm, bed_y_mm }, `Lay out for ${bed_x_mm} × ${bed_y_mm} mm`);
   }
 
   #followSimulation(): void {

@@ -48,7 +48,7 @@ export function SheetSize({ session }: { readonly session: ZippableSession }) {
           </Button>
         ) : null}
         {byHand ? null : (
-          <Button size="small" kind="quiet" onClick={() => sheets.setByHand()}>
+          <Button size="small" onClick={() => sheets.setByHand()}>
             Use another size
           </Button>
         )}

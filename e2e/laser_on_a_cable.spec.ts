@@ -89,6 +89,7 @@ test('a laser on a cable: connect, home, cut, hold, go on, and the cable pulled'
 
     await page.getByRole('button', { name: 'Connect by cable' }).click();
     await expect(chip(page, 'Locked')).toBeVisible({ timeout: 20_000 });
+    await expect(page.getByText('Speed of practice jobs')).toHaveCount(0); // a real machine has its own
     await expect(page.getByRole('button', { name: /^Start/ })).toHaveAttribute('aria-disabled', 'true');
     await page.locator('.machine-buttons').getByRole('button', { name: 'Home' }).click();
     await confirm(page, 'Home');

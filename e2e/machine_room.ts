@@ -31,6 +31,19 @@ export async function openDrawing(page: Page, file = square): Promise<void> {
   await expect(strip(page, 'Job ready')).toBeVisible();
 }
 
+/** Adds a laser with a bed of this size, which is chosen then. */
+export async function addLaser(page: Page, name: string, width_mm: string, depth_mm: string): Promise<void> {
+  await page.getByRole('link', { name: 'Machines', exact: true }).click();
+  const menu = page.locator('.profile-button');
+  await menu.click();
+  await page.getByRole('menuitem', { name: 'Add a machine' }).click();
+  await dialog(page).getByLabel('Name').fill(name);
+  await dialog(page).getByLabel('Bed width, mm').fill(width_mm);
+  await dialog(page).getByLabel('Bed depth, mm').fill(depth_mm);
+  await dialog(page).getByRole('button', { name: 'Add', exact: true }).click();
+  await expect(menu).toHaveText(name);
+}
+
 /** Nothing is done before the question is answered, and the focus stands on Cancel. */
 export async function confirm(page: Page, title: RegExp, action: string, says: RegExp): Promise<void> {
   await expect(dialog(page).getByRole('heading', { name: title })).toBeVisible();

@@ -25,7 +25,7 @@ test.skip(
 );
 
 test('from the sample star to a finished laser job', async ({ page }) => {
-  test.setTimeout(420_000); // the laser takes its two minutes, practice or not
+  test.setTimeout(420_000); // at its own speed the practice laser takes two minutes
   await openPage(page);
   await page.getByRole('link', { name: 'Zippable', exact: true }).click();
   await page.locator('.gallery button', { hasText: 'Star' }).click();
@@ -33,8 +33,11 @@ test('from the sample star to a finished laser job', async ({ page }) => {
   await page.getByRole('button', { name: 'Make the ribbon', exact: true }).click();
   await expect(strip(page, 'Ribbon unfolded')).toBeVisible({ timeout: 150_000 });
   await page.getByRole('radio', { name: 'Sheets to cut' }).click();
-  await page.getByRole('textbox', { name: 'Sheet width' }).fill('300');
-  await page.getByRole('textbox', { name: 'Sheet width' }).press('Enter');
+  // Smaller than the bed: the job begins where the head is led.
+  for (const name of ['Sheet width', 'Sheet depth']) {
+    await page.getByRole('textbox', { name }).fill('300');
+    await page.getByRole('textbox', { name }).press('Enter');
+  }
   await expect(page.getByRole('img', { name: / of 300 × 300\smm; / })).toBeVisible();
   const send = page.getByRole('button', { name: /Send to a machine/ });
   await send.click();
@@ -116,6 +119,48 @@ test('a drawing to a finished job by keyboard alone', async ({ page }) => {
   await page.keyboard.press('Enter');
   await expect(chip(page)).toHaveText('Working');
   await expect(strip(page, 'square is done')).toBeVisible({ timeout: 120_000 });
+});
+
+test('a practice job is sped up by keyboard; its time stays that of a real machine', async ({ page }) => {
+  await openDrawing(page);
+  await makeReady(page);
+  const speeds = page.getByRole('radiogroup', { name: 'Speed of practice jobs' });
+  await expect(speeds.getByRole('radio', { name: '1×', exact: true })).toBeChecked();
+  await expect(speeds).toHaveAccessibleDescription(/^Job time and log are those of a real machine/);
+  await startIt(page);
+  const start_ms = Date.now();
+  await speeds.getByRole('radio', { name: '1×', exact: true }).focus();
+  await page.keyboard.press('ArrowRight');
+  await page.keyboard.press('ArrowRight');
+  await expect(speeds.getByRole('radio', { name: '16×', exact: true })).toBeFocused();
+  await expect(strip(page, 'square is done')).toBeVisible();
+  const onWall_s = (Date.now() - start_ms) / 1000;
+  const detail = (await page.getByRole('contentinfo').textContent()) ?? '';
+  const ofMachine_s = Number(/lines in (\d+)\ss/.exec(detail)?.[1]);
+  expect(ofMachine_s).toBeGreaterThan(15); // 190 mm at 10 mm/s, and a mark
+  expect(onWall_s).toBeLessThan(0.6 * ofMachine_s);
+  await page.getByRole('radio', { name: 'Console' }).click();
+  await page.getByText('1 job so far').click();
+  await expect(page.getByText(/^Practice laser, practice, /)).toBeVisible();
+  await expect(page.getByText(new RegExp(`done after ${ofMachine_s}\\ss`))).toBeVisible();
+
+  // On a phone it fits, and Stop is obeyed at once: in a job of three minutes.
+  await setSpeed(page, 'Cut', '1');
+  await page.setViewportSize({ width: 390, height: 844 });
+  const box = await speeds.boundingBox();
+  expect(box?.x).toBeGreaterThanOrEqual(0);
+  expect((box?.x ?? 0) + (box?.width ?? 999)).toBeLessThanOrEqual(390);
+  await speeds.getByRole('radio', { name: '4×', exact: true }).click();
+  await startIt(page);
+  await button(page, 'Stop').click();
+  await expect(
+    page
+      .getByRole('contentinfo')
+      .locator('strong')
+      .getByText(/^Job stopped at \d+ %$/),
+  ).toBeVisible({ timeout: 3000 });
+  await button(page, 'Disconnect').click();
+  await expect(speeds).toHaveCount(0);
 });
 
 test('stopped in the middle: the position is unknown, and the rest is cut after homing', async ({ page }) => {

@@ -64,16 +64,16 @@ test('a star by mouse: windings, the same place on both sides, SVG, reload', asy
   // The same ribbon on the sheets that it is cut from.
   const made = await seam(page).textContent();
   await page.getByRole('radio', { name: 'Sheets to cut' }).click();
-  const words = /^\d pieces on \d sheets? of 600 × 300\smm; zipper to cut: \d\.\d\d\sm$/;
+  const words = /^\d pieces on \d sheets? of 400 × 400\smm; zipper to cut: \d\.\d\d\sm$/;
   await expect(page.getByRole('img', { name: words })).toBeVisible();
   await page.getByRole('textbox', { name: 'Sheet width' }).fill('200');
   await page.getByRole('textbox', { name: 'Sheet width' }).press('Enter');
-  await expect(page.getByRole('img', { name: / of 200 × 300\smm; / })).toBeVisible();
+  await expect(page.getByRole('img', { name: / of 200 × 400\smm; / })).toBeVisible();
   await expect(strip(page, 'Ribbon unfolded')).toBeVisible(); // which does not depend on the bed
   const planned = page.waitForEvent('download');
   await page.getByRole('button', { name: 'Export plan, SVG' }).click();
   const plan = readFileSync(await (await planned).path(), 'utf8');
-  expect(plan).toMatch(/<svg[^>]* height="300mm"/);
+  expect(plan).toMatch(/<svg[^>]* height="400mm"/);
   for (const layer of ['cut', 'mark', 'engrave']) expect(plan).toContain(`id="${layer}"`);
   await page.getByRole('radio', { name: 'Ribbon', exact: true }).click();
 

@@ -168,7 +168,7 @@ async function setLaserSpeeds(page: Page): Promise<void> {
   await page.getByRole('link', { name: 'Zippable', exact: true }).click();
 }
 
-/** Practice machines take as long as real ones: jobs run to their end in `npm run actions` and `make test-all` only. */
+/** At its own speed a practice machine takes as long as a real one: jobs run to their end in `npm run actions` and `make test-all` only. */
 const inFull = process.env['FORMWRIGHT_LONG_TESTS'] === 'ON';
 
 test('laser', async ({ page, counter }) => {
@@ -178,8 +178,6 @@ test('laser', async ({ page, counter }) => {
   await setLaserSpeeds(page);
   counter.begin();
   await page.getByRole('radio', { name: 'Sheets to cut' }).click();
-  await button(page, /Send to a machine/).click();
-  await button(page, 'Lay out again for 400 × 400').click();
   await expect(page.getByRole('img', { name: /1 sheet of 400 × 400/ })).toBeVisible();
   await button(page, /Send to a machine/).click();
   await expect(strip(page, 'Job ready')).toBeVisible();

@@ -21,12 +21,13 @@ import { toast } from './ui';
 async function start(root: HTMLElement): Promise<void> {
   followSystemTheme();
   const services = await createServices();
+  const machines = new MachinesSession(services);
   const sessions = {
     relief: new ReliefSession(services),
     thermoform: new ThermoformSession(services),
-    zippable: new ZippableSession(services),
+    zippable: new ZippableSession(services, machines.laserSheet),
     evidence: new EvidenceSession(services),
-    machines: new MachinesSession(services),
+    machines,
   };
   effect(() => resumePending(sessions.relief));
   effect(() => resumePending(sessions.thermoform));

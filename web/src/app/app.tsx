@@ -184,11 +184,8 @@ export function App({ services, sessions }: AppProps) {
         <MachinesPage
           session={sessions.machines}
           onChooseFile={chooseFile}
-          onLayOutAgain={([bed_x_mm, bed_y_mm]) => {
-            sessions.zippable.setParameters(
-              { bed_x_mm, bed_y_mm },
-              `Lay out for ${bed_x_mm} × ${bed_y_mm} mm`,
-            );
+          onLayOutAgain={(bed_mm) => {
+            sessions.zippable.sheets.useBed(bed_mm);
             flatView.value = 'sheets';
             go('zippable');
           }}

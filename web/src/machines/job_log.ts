@@ -6,7 +6,10 @@ export interface LoggedJob {
   readonly id: string;
   readonly name: string;
   readonly machine: string;
+  /** The machine was on the screen only. */
+  readonly practice?: boolean;
   readonly started_unix_s: number;
+  /** In the machine's time: of a practice job that was sped up, as long as a real machine takes. */
   readonly seconds: number | null;
   /** Null: the page was closed or crashed meanwhile. */
   readonly ended: string | null;

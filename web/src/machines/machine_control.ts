@@ -34,6 +34,10 @@ export class MachineControl {
   readonly connecting = signal(false);
   /** The machine that is connected exists on the screen only. */
   readonly practising = signal(false);
+  /** Seconds of the machine a second, in which a practice machine works off jobs; real ones have their own time. */
+  readonly practiceSpeed = signal(1);
+  /** The same as it is now, as measured; 1 of a real machine. */
+  readonly pace: ReadonlySignal<number> = computed(() => this.link.value?.practice?.pace.value ?? 1);
   /** What went wrong last, in a sentence. */
   readonly problem = signal<string | null>(null);
   readonly machineName = signal('');
@@ -53,6 +57,10 @@ export class MachineControl {
       if (gone !== null) this.#lost(gone);
     });
     effect(() => this.#writeLog());
+    effect(() => {
+      const speed = this.practiceSpeed.value;
+      void this.link.value?.practice?.setSpeed(speed).catch(() => undefined); // gone meanwhile
+    });
     addEventListener('beforeunload', (event) => {
       if (this.isBusy) event.preventDefault();
     });
@@ -186,6 +194,7 @@ export class MachineControl {
       id: this.#jobId,
       name: job.name,
       machine: this.machineName.peek(),
+      ...(this.practising.peek() ? { practice: true } : {}),
       started_unix_s: known?.started_unix_s ?? Math.round(Date.now() / 1000),
       seconds: job.ended === null ? null : job.seconds,
       ended: job.ended,

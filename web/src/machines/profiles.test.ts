@@ -35,9 +35,25 @@ describe('machine profiles', () => {
     expect(store.oneThat(false).name).toBe('Practice laser');
     store.put(laser);
     expect(store.oneThat(false).name).toBe('Workshop');
-    expect(store.oneThat(true).name).toBe('Practice mill');
     for (const { id } of [practiceMill, mill]) store.remove(id);
     expect(store.oneThat(true)).toEqual(practiceMill);
+  });
+  it('one of the other kind is the last that was in use, also in the next page', () => {
+    const memory = new Memory();
+    const store = new ProfileStore(memory);
+    const printer = { ...practiceLaser, id: 'p', name: 'Printer', options: { tool: 'printer' } };
+    const mill = { ...practiceMill, id: 'm', name: 'Workshop mill' };
+    for (const machine of [mill, laser, printer, practiceMill]) store.put(machine);
+    for (const { laser: used } of [store, new ProfileStore(memory)]) expect(used.name).toBe('Workshop');
+    store.choose('a');
+    expect(store.oneThat(true).name).toBe('Practice mill');
+    store.choose('m');
+    store.choose('a');
+    expect(new ProfileStore(memory).oneThat(true).name).toBe('Workshop mill');
+    store.remove('m');
+    expect(store.oneThat(true).name).toBe('Practice mill');
+    for (const id of ['a', 'practice']) store.remove(id);
+    expect(store.laser).toEqual(practiceLaser); // there is always one to practise on
   });
   describe('in two tabs', () => {
     const felt = { name: 'Felt 3 mm', parameters: { cut_power_percent: 45 } };

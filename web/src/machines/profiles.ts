@@ -92,11 +92,16 @@ export const isPractice = ({ id }: MachineProfile): boolean =>
   id === practiceLaser.id || id === practiceMill.id;
 
 export const isMill = ({ options }: MachineProfile): boolean => options['tool'] === 'mill';
+const isLaser = ({ options }: MachineProfile): boolean => (options['tool'] ?? 'laser') === 'laser';
 
 interface Kept {
   readonly profiles: readonly MachineProfile[];
   readonly chosen: string | null;
+  readonly recent: readonly string[];
 }
+
+/** So many machines are remembered in the order of their use. */
+const keptRecent = 16;
 
 /** What a tab has stored, or null where there is nothing to be read. */
 function asKept(text: string | null): Kept | null {
@@ -115,7 +120,8 @@ function asKept(text: string | null): Kept | null {
     }
   });
   const chosen = typeof stored['chosen'] === 'string' ? stored['chosen'] : null;
-  return { profiles, chosen };
+  const recent = Array.isArray(stored['recent']) ? stored['recent'] : [];
+  return { profiles, chosen, recent: recent.filter((id) => typeof id === 'string').slice(0, keptRecent) };
 }
 
 type Edit = (all: readonly MachineProfile[]) => readonly MachineProfile[];
@@ -127,6 +133,8 @@ export class ProfileStore {
   #unsaved: Edit[] = [];
   readonly profiles = signal<readonly MachineProfile[]>([practiceLaser, practiceMill]);
   readonly chosen = signal<string>(practiceLaser.id);
+  /** Ids of machines that were in use, the last one first. */
+  readonly #recent = signal<readonly string[]>([]);
 
   constructor(
     storage: Pick<Storage, 'getItem' | 'setItem'>,
@@ -136,6 +144,7 @@ export class ProfileStore {
     const stored = this.#stored();
     if (stored !== null && stored.profiles.length > 0) this.profiles.value = stored.profiles;
     if (stored?.chosen) this.chosen.value = stored.chosen;
+    if (stored !== null) this.#recent.value = stored.recent;
     tabs.addEventListener?.('storage', (event) => {
       if ((event as StorageEvent).key === key) this.#catchUp();
     });
@@ -146,22 +155,37 @@ export class ProfileStore {
     return all.find(({ id }) => id === this.chosen.value) ?? all[0] ?? practiceLaser;
   }
 
-  /** One that carves, or one that does not: the one in use, else the first there is. */
+  /** One that carves, or one that does not: the one in use, else the last that was, else the first there is. */
   oneThat(carves: boolean): MachineProfile {
-    const isIt = (profile: MachineProfile) => isMill(profile) === carves;
-    return [this.current, ...this.profiles.value].find(isIt) ?? (carves ? practiceMill : practiceLaser);
+    return this.#lastUsed((profile) => isMill(profile) === carves) ?? (carves ? practiceMill : practiceLaser);
+  }
+
+  /** The laser in use; while another machine is, the last laser that was, else the first there is. */
+  get laser(): MachineProfile {
+    return this.#lastUsed(isLaser) ?? practiceLaser;
+  }
+
+  #lastUsed(isIt: (profile: MachineProfile) => boolean): MachineProfile | undefined {
+    const { value: all } = this.profiles;
+    const before = this.#recent.value.flatMap((id) => all.find((profile) => profile.id === id) ?? []);
+    return [this.current, ...before, ...all].find(isIt);
   }
 
   choose(id: string): void {
-    this.chosen.value = id;
+    this.#use(id);
     this.#change((all) => all);
+  }
+  #use(id: string): void {
+    const others = [this.current.id, ...this.#recent.value].filter((other) => other !== id);
+    this.#recent.value = [id, ...new Set(others)].slice(0, keptRecent);
+    this.chosen.value = id;
   }
   /** Adds the machine, or changes the one with its id; it is in use then. */
   put(profile: MachineProfile): void {
     const known = this.profiles.value.find(({ id }) => id === profile.id);
     if (known && jsonEqual(known as unknown as Json, profile as unknown as Json))
       return this.choose(profile.id); // another tab may know more of it
-    this.chosen.value = profile.id;
+    this.#use(profile.id);
     this.#change((all) =>
       all.some(({ id }) => id === profile.id)
         ? all.map((old) => (old.id === profile.id ? profile : old))
@@ -200,7 +224,10 @@ export class ProfileStore {
     this.#unsaved.push(edit);
     const profiles = this.profiles.value.map((profile) => ({ format, version: 1, ...profile }));
     try {
-      this.#storage.setItem(key, JSON.stringify({ profiles, chosen: this.chosen.value }));
+      this.#storage.setItem(
+        key,
+        JSON.stringify({ profiles, chosen: this.chosen.value, recent: this.#recent.value }),
+      );
       this.#unsaved = [];
     } catch {
       // No room: they are written with the next change that fits.

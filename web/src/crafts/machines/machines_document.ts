@@ -2,6 +2,7 @@
 // What the machines' room keeps in a project: the drawing, model, test or job that is to be made, and how.
 import type { Catalog, JsonObject, Operation } from '../../jobs/contract';
 import { findOperation } from '../../jobs/contract';
+import type { MachineProfile } from '../../machines/profiles';
 import type { BlobReference } from '../../project/document';
 import { jsonEqual } from '../../project/document';
 import type { RoomDocument } from '../../shared/session/craft_document';
@@ -34,6 +35,8 @@ export interface MachinesDocument extends RoomDocument {
   readonly drawing: Work | null;
   /** Parameters of the other operations, by name. */
   readonly set_aside: Readonly<Record<string, JsonObject>>;
+  /** The id of the machine that these parameters were set for; null where nobody has noted it. */
+  readonly machine: string | null;
 }
 
 export const drawingEndings = ['.svg'];
@@ -89,7 +92,11 @@ class MachinesCommands extends RoomCommands<MachinesDocument> {
   }
 
   /** The machine's values in the parameters in force, and in those that are kept aside. */
-  setMachine(catalog: Catalog, values: JsonObject, label: string) {
+  setMachine(
+    catalog: Catalog,
+    { id, parameters: values }: Pick<MachineProfile, 'id' | 'parameters'>,
+    label: string,
+  ) {
     return this.command({ label }, ({ drawing, parameters, set_aside }) => {
       const with_ = (name: string, old: JsonObject) => {
         const operation = findOperation(catalog, name);
@@ -103,6 +110,7 @@ class MachinesCommands extends RoomCommands<MachinesDocument> {
         set_aside: Object.fromEntries(
           Object.entries(set_aside).map(([name, old]) => [name, with_(name, old)] as const),
         ),
+        machine: id,
       };
       return changed;
     });
@@ -131,7 +139,12 @@ class MachinesCommands extends RoomCommands<MachinesDocument> {
     });
   }
 }
-export const machines = new MachinesCommands('machines', { ...emptyRoom, drawing: null, set_aside: {} });
+export const machines = new MachinesCommands('machines', {
+  ...emptyRoom,
+  drawing: null,
+  set_aside: {},
+  machine: null,
+});
 
 /** Width and height of a PNG from its header; null for what is none. */
 export function pictureSize(bytes: Uint8Array): readonly [number, number] | null {

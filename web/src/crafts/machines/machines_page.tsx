@@ -172,7 +172,7 @@ function Strip({ session, onChooseFile }: Omit<MachinesPageProps, 'onLayOutAgain
             ? partWords(session, time)
             : `Line ${formatCount(job.acknowledged)} of ${formatCount(job.line_count)}`
         }
-        progress={{ fraction, seconds_left: seconds > 0 ? seconds - time : null }}
+        progress={{ fraction, seconds_left: seconds > 0 ? (seconds - time) / control.pace.value : null }}
       />
     );
   }

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { signal } from '@preact/signals';
 import { expect, it, vi } from 'vitest';
-import { practiceMill } from '../../machines/profiles';
+import { practiceLaser, practiceMill } from '../../machines/profiles';
 import { solveInFull } from '../../shared/session/full_solve';
 import { resultOf, settled, testCatalog, testServices } from '../../shared/session/test_room';
 import { laserJob, machines, millJob } from './machines_document';
@@ -103,4 +103,34 @@ it('the second tool’s job comes after the first, and waits until z is set with
   expect(session.needsZ).toBe(false);
   // It is not that job which is done.
   expect(session.control.loaded.value).not.toBe(session.jobKey.value);
+});
+
+it('a new project begins with the bed of the machine that is chosen', async () => {
+  const number = (value: number) => ({ type: 'number', default: value, 'x-group': 'Machine' });
+  const plain = testCatalog(laserJob, millJob);
+  const properties = { bed_x_mm: number(400), bed_y_mm: number(400), turn_degrees: { type: 'number' } };
+  const operations = plain.operations.map((operation) => ({ ...operation, parameters: { properties } }));
+  const services = testServices({ ...plain, operations });
+  const session = new MachinesSession(services);
+  session.profiles.put({
+    ...practiceLaser,
+    id: 'w',
+    name: 'Workshop',
+    parameters: { bed_x_mm: 600, bed_y_mm: 300 },
+  });
+  expect(session.bed_mm).toEqual([600, 300]);
+  expect(session.laserSheet.value).toMatchObject({ laser: 'Workshop', bed_x_mm: 600, bed_y_mm: 300 });
+  session.setParameters({ turn_degrees: 90 }, 'Turn');
+  expect(session.document.value.parameters).toEqual({ turn_degrees: 90, bed_x_mm: 600, bed_y_mm: 300 });
+  services.projects.undo();
+  expect(await session.take('star.svg', new Uint8Array(3))).toBe(true);
+  expect(session.bed_mm).toEqual([600, 300]);
+  // What the project was set to counts, whatever the profile becomes.
+  session.profiles.put({ ...session.profiles.current, parameters: { bed_x_mm: 900, bed_y_mm: 900 } });
+  expect(session.bed_mm).toEqual([600, 300]);
+  // New work is for the machine that is chosen then.
+  session.profiles.choose(practiceLaser.id);
+  expect(await session.take('cat.svg', new Uint8Array(4))).toBe(true);
+  expect(session.bed_mm).toEqual([400, 400]);
+  session.profiles.remove('w');
 });

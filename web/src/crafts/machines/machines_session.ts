@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Keeps the job in step with its drawing and parameters. The machine itself is held by MachineControl, whichever room is looked at.
 import { computed, effect, signal, untracked } from '@preact/signals';
-import type { Catalog, JsonObject, Report } from '../../jobs/contract';
+import type { Catalog, Json, JsonObject, Report } from '../../jobs/contract';
 import { asJobError, cancelled, findOperation } from '../../jobs/contract';
 import { LatestOnly } from '../../jobs/latest_only';
 import { JobLog } from '../../machines/job_log';
 import { openVirtual } from '../../machines/links/open_machine';
 import { MachineControl } from '../../machines/machine_control';
+import type { LaserSheet } from '../../machines/laser_sheet';
 import { asOrigin } from '../../machines/places';
 import type { MachineProfile } from '../../machines/profiles';
 import { isMill, ProfileStore } from '../../machines/profiles';
@@ -17,8 +18,10 @@ import { nameProject, sameRequest } from '../../shared/session/craft_document';
 import type { Measured } from '../../shared/session/estimate';
 import { estimateSeconds, recall } from '../../shared/session/estimate';
 import { figure } from '../../shared/session/report';
+import type { Change } from '../../shared/session/room_session';
 import { RoomSession } from '../../shared/session/room_session';
 import { readyWorker, type Services } from '../../shared/session/services';
+import { isOfOther, isUntouched, laserSheet } from './laser_in_use';
 import type { FileWork, MachinesDocument } from './machines_document';
 import {
   drawingEndings,
@@ -42,6 +45,10 @@ export class MachinesSession extends RoomSession<MachinesDocument> {
   readonly profiles = new ProfileStore(localStorage);
   readonly log = new JobLog(localStorage);
   readonly control = new MachineControl(this.log);
+  /** For who lays out what this project cuts on a laser. */
+  readonly laserSheet = computed<LaserSheet | null>(() =>
+    laserSheet(this.profiles, this.document.value, this.services.catalog.value),
+  );
   readonly plan = signal<Plan | null>(null);
   readonly planning = signal(false);
   /** Seconds from the job's start that the bed shows; null: the end, or where the machine is. */
@@ -311,6 +318,7 @@ export class MachinesSession extends RoomSession<MachinesDocument> {
     }
     const blank = this.services.projects.isBlank.value;
     try {
+      this.#takeMachine(catalog, change);
       change(
         machines.setWork(catalog, { file_name, kind, file, ...nodes, ...more }, `Open ${file_name}`, own),
       );
@@ -344,6 +352,7 @@ export class MachinesSession extends RoomSession<MachinesDocument> {
     const { drawing } = this.document.value;
     if (catalog === null || drawing?.kind === 'test') return;
     const work = { file_name: 'Material test', kind: 'test', instead_of: drawing } as const;
+    this.#takeMachine(catalog, (command) => this.services.projects.do(command));
     this.services.projects.do(machines.setWork(catalog, work, 'Test the material'));
     this.problem.value = null;
   }
@@ -361,14 +370,35 @@ export class MachinesSession extends RoomSession<MachinesDocument> {
     return this.control.connect(this.profiles.current, () => openVirtual(this.driverOptions()), true);
   }
 
+  override value(name: string): Json {
+    const own = isUntouched(this.document.value) ? this.profiles.current.parameters[name] : undefined;
+    const isKnown = this.operation.value?.parameters.properties[name] !== undefined;
+    return own !== undefined && isKnown ? own : super.value(name);
+  }
+
+  override setParameters(values: JsonObject, label: string, coalesce?: string): void {
+    const { catalog, projects } = this.services;
+    if (catalog.value && isUntouched(this.document.value))
+      this.#takeMachine(catalog.value, (command) => projects.do(command));
+    super.setParameters(values, label, coalesce);
+  }
+
+  /** New work is for the machine in use: its bed and speeds count where the project has none, or another machine's. */
+  #takeMachine(catalog: Catalog, change: Change): void {
+    const profile = this.profiles.current;
+    const untouched = isUntouched(this.document.value);
+    if (!untouched && !isOfOther(this.document.value, profile)) return;
+    const command = machines.setMachine(catalog, profile, `Use ${profile.name}`);
+    change(untouched ? { ...command, recorded: false } : command);
+  }
+
   /** Changes to this machine: its bed and speeds become the job's. */
   useProfile(profile: MachineProfile): void {
     // The rest of a job lies on the machine that began it.
     if (profile.id !== this.profiles.current.id) this.control.cutOff.value = null;
     this.profiles.put(profile);
     const catalog = this.services.catalog.value;
-    if (catalog)
-      this.services.projects.do(machines.setMachine(catalog, profile.parameters, `Use ${profile.name}`));
+    if (catalog) this.services.projects.do(machines.setMachine(catalog, profile, `Use ${profile.name}`));
     this.services.projects.commit();
   }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Model, parts, parameters, lengths and errors, and the one filled button.
+import type { ComponentChildren } from 'preact';
 import { ModelRow } from '../../shared/panels/model_row';
 import { ParameterPanel } from '../../shared/panels/parameter_panel';
 import { figure, vectorOf } from '../../shared/session/report';
@@ -7,6 +8,7 @@ import { MainButton } from './export_button';
 import { Figures } from './figures';
 import { PartList } from './drawing/part_list';
 import type { SendToMachine } from './ribbon/send_sheet';
+import { SheetSize } from './sheet_size_row';
 import { flatView } from './views';
 import { design, planning } from './zippable_document';
 import type { ZippableSession } from './zippable_session';
@@ -21,12 +23,14 @@ export interface InspectorProps {
 
 /** What the core chose where the maker left it open. */
 function automaticValues(session: ZippableSession): Record<string, number> {
+  const sizes = session.sheets.automatic.value;
   const shown = session.shown.value;
-  if (shown === null) return {};
+  if (shown === null) return sizes;
   const windings = shown.design.parts.map((part) => part.windings);
   const size = vectorOf(shown.report, 'size_mm');
   const width = figure(shown.report, 'ribbon_width_mean_mm');
   return {
+    ...sizes,
     ...(windings.length > 0
       ? { windings: Math.round((10 * windings.reduce((a, b) => a + b, 0)) / windings.length) / 10 }
       : {}),
@@ -41,6 +45,13 @@ function automaticValues(session: ZippableSession): Record<string, number> {
 function openGroups(session: ZippableSession): string[] {
   const operation = session.operationNamed(flatView.value === 'ribbon' ? design : planning);
   return Object.values(operation?.parameters.properties ?? {}).map((schema) => schema['x-group'] ?? '');
+}
+
+/** In the order of the groups; those of the plan only where there is one to make. */
+function groupHeads(session: ZippableSession): Record<string, ComponentChildren> {
+  const parts = { Ribbon: null, Parts: <PartList session={session} /> };
+  if (session.operationNamed(planning) === undefined) return parts;
+  return { ...parts, 'Zipper line': null, Zipper: null, Sheets: <SheetSize session={session} /> };
 }
 
 export function Inspector({ session, picture, onReplace, onSolve, onSendToMachine }: InspectorProps) {
@@ -58,7 +69,7 @@ export function Inspector({ session, picture, onReplace, onSolve, onSendToMachin
           onPreview={(name, value) => session.preview(name, value)}
           onCommit={() => session.services.projects.commit()}
           onPreset={(values, label) => session.setParameters(values, label)}
-          groupHead={{ Ribbon: null, Parts: <PartList session={session} /> }}
+          groupHead={groupHeads(session)}
           automatic={automaticValues(session)}
           openGroups={openGroups(session)}
         />

@@ -17,7 +17,17 @@ async function madeOf(
   const operation = session.operationNamed(operationName);
   if (design === null || operation === undefined) return null;
   const inputs = { design: { sha256: design.blob, file_name: 'design.json' } };
-  return await productBytes(session, { operation, from: design.blob, inputs, output, beside, label });
+  const planned = operationName === planning;
+  if (planned) session.sheets.note();
+  return await productBytes(session, {
+    operation,
+    from: design.blob,
+    inputs,
+    output,
+    beside,
+    label,
+    ...(planned ? { parameters: session.sheets.parameters.value } : {}),
+  });
 }
 
 /** The bytes of a file of the plan. Null: failed or cancelled, which the page has said. */

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The zippable's part of a project.
 import type { Catalog, JsonObject, Operation } from '../../jobs/contract';
+import type { LaserSheet } from '../../machines/laser_sheet';
 import type { BlobReference } from '../../project/document';
 import type { CraftDocument, CraftResult, Subject } from '../../shared/session/craft_document';
 import { CraftCommands, emptyCraft, sameRequest } from '../../shared/session/craft_document';
@@ -8,10 +9,12 @@ import type { RoomWithProducts } from '../../shared/session/products';
 import { offeredTogether } from '../../shared/session/products';
 import type { Drawn } from './drawing/drawn_parts';
 import { nothingDrawn } from './drawing/drawn_parts';
+import { leftToLaser, planning } from './sheet_size';
+
+export { planning };
 
 export const design = 'zippable-design';
 /** What is made of a design; a build offers it where its catalog names it. */
-export const planning = 'zippable-plan';
 export const simulating = 'zippable-simulate';
 
 /** The design with the parameters of what is made of it; the page always goes on from the parts to the ribbon. */
@@ -19,7 +22,7 @@ export function offered(catalog: Catalog): Operation | null {
   const operation = offeredTogether(catalog, design, [planning, simulating]);
   if (operation === null) return null;
   const { check_parts: _, ...properties } = operation.parameters.properties;
-  return { ...operation, parameters: { properties } };
+  return leftToLaser({ ...operation, parameters: { properties } });
 }
 
 /** What was drawn, on which model, and as the operation reads it. */
@@ -31,12 +34,15 @@ export interface DrawnParts extends Drawn {
 
 export interface ZippableDocument extends CraftDocument, RoomWithProducts {
   readonly drawn: DrawnParts | null;
+  /** The laser that the cutting plans were laid out for; null before the first one. */
+  readonly laid_out_for: LaserSheet | null;
 }
 
 export const zippable = new CraftCommands<ZippableDocument>('zippable', {
   ...emptyCraft,
   products: [],
   drawn: null,
+  laid_out_for: null,
 });
 
 /** What is drawn on the model in force. */
@@ -49,6 +55,19 @@ export function drawnOn({ model, drawn }: ZippableDocument): DrawnParts {
 
 export const setDrawn = (drawn: DrawnParts, label: string) =>
   zippable.command({ label }, () => ({ drawn }) as Partial<ZippableDocument>);
+
+/** Plans are laid out for this laser from now on. Undone, they are laid out as before. */
+export const layOutFor = (laser: LaserSheet, label: string) =>
+  zippable.command({ label }, ({ parameters }) => {
+    const { bed_x_mm: _x, bed_y_mm: _y, ...kept } = parameters;
+    return { parameters: kept, laid_out_for: laser } as Partial<ZippableDocument>;
+  });
+
+/** The same where nobody asked for it: sizes that were set by hand stay. */
+export const noteLaser = (laser: LaserSheet) =>
+  zippable.command({ label: 'Lay out', recorded: false }, () => {
+    return { laid_out_for: laser } as Partial<ZippableDocument>;
+  });
 
 /** The design made with exactly these parameters, the model and the parts in force, if there is one. */
 export function currentResult(

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the zippable page does beyond opening models: designs a ribbon for a stand-in at every change, shows what was
 // designed for the whole model.
+import type { ReadonlySignal } from '@preact/signals';
 import { computed, effect, signal, untracked } from '@preact/signals';
 import type { Result } from '../../jobs/backend';
-import type { JobInput, Operation, Report } from '../../jobs/contract';
+import type { JobInput, JsonObject, Operation, Report } from '../../jobs/contract';
 import { findOperation } from '../../jobs/contract';
 import type { Film } from '../../jobs/glb';
 import { readFilm, readPolylines } from '../../jobs/mesh_reader';
+import type { LaserSheet } from '../../machines/laser_sheet';
 import type { CraftResult } from '../../shared/session/craft_document';
 import { known } from '../../shared/session/craft_document';
 import type { Measured } from '../../shared/session/estimate';
@@ -30,6 +32,7 @@ import { cutByParts } from './ribbon/cut_ribbon';
 import { PartBorders } from './ribbon/part_borders';
 import type { PartDistortion } from './ribbon/part_map';
 import { distortionOfParts, partsOfTriangles, VertexGrid } from './ribbon/part_map';
+import { LaserSheets } from './laser_sheets';
 import type { ZippableDocument } from './zippable_document';
 import { currentResult, design, drawnOn, offered, planning, simulating, zippable } from './zippable_document';
 
@@ -100,17 +103,20 @@ export class ZippableSession extends RoomSession<ZippableDocument> {
   readonly shown = this.previews.shown;
   /** What plans are made of; null while the design is a preview. */
   readonly designFile = computed(() => this.result.value?.outputs['design.json'] ?? null);
-  readonly plan = computed(() => this.#madeOfDesign(planning));
-  readonly simulation = computed(() => this.#madeOfDesign(simulating));
+  readonly plan = computed(() => this.#madeOfDesign(planning, this.sheets.parameters.value));
+  readonly simulation = computed(() => this.#madeOfDesign(simulating, this.document.value.parameters));
   /** How the simulated cloth went, of the design in force. */
   readonly film = signal<Film | null>(null);
   /** The report of the previewed ribbon with its distances from the model; null until it rests. */
   readonly distances = signal<Report | null>(null);
   readonly #previewed = signal<Measured | null>(null);
   #divided: DividedModel | null = null;
+  /** How large the sheets are that plans are laid out for. */
+  readonly sheets: LaserSheets;
 
-  constructor(services: Services) {
+  constructor(services: Services, laser: ReadonlySignal<LaserSheet | null> = signal(null)) {
     super(services, zippable);
+    this.sheets = new LaserSheets(this, laser);
     this.previews.startFollowing();
     this.#measureLater();
     this.#followSimulation();
@@ -124,9 +130,10 @@ export class ZippableSession extends RoomSession<ZippableDocument> {
     });
   }
 
-  #madeOfDesign(operation: string): Product | null {
+  #madeOfDesign(operation: string, parameters: JsonObject): Product | null {
     const { value } = this.designFile;
-    return productOf(this.document.value, value?.blob ?? null, this.operationNamed(operation));
+    const { products } = this.document.value;
+    return productOf({ products, parameters }, value?.blob ?? null, this.operationNamed(operation));
   }
 
   #followSimulation(): void {

@@ -184,28 +184,35 @@ export async function openUsbEnd(usb: UsbLike, index: number, listener: EndListe
   };
 }
 
-/** A machine to practise on; its time is the worker's. */
+export interface VirtualEnd extends MachineEnd {
+  /** Lets time pass for the machine, which may say something. */
+  advance(now_s: number): void;
+  /** Into a limit switch. */
+  trip(): void;
+}
+
+/** A machine to practise on. Its time is the driver's, which says when it passes. */
 export function openVirtualEnd(
   module: MachineModule,
   bed_mm: readonly [number, number],
   mill: boolean,
   now_s: () => number,
   listener: EndListener,
-): MachineEnd & { trip(): void } {
+): VirtualEnd {
   const handle = module.newVirtual(bed_mm, mill, now_s());
-  const hear = () => {
-    const said = module.advanceVirtual(handle, now_s());
-    if (said.length > 0) listener.received(said);
-  };
-  const timer = setInterval(hear, 20);
+  let open = true;
   return {
+    advance: (now) => {
+      const said = module.advanceVirtual(handle, now);
+      if (said.length > 0) listener.received(said);
+    },
     write: (packet) => {
-      module.tellVirtual(handle, packet, now_s());
+      if (open) module.tellVirtual(handle, packet, now_s());
       return Promise.resolve();
     },
     trip: () => module.tripVirtualLimit(handle),
     close: () => {
-      clearInterval(timer);
+      open = false;
       module.dropVirtual(handle);
       listener.gone(null);
       return Promise.resolve();

@@ -23,6 +23,15 @@ export interface MachineLink {
   command(command: MachineCommand): Promise<void>;
   load(name: string, job: Uint8Array): Promise<void>;
   close(): Promise<void>;
+  /** Only of a machine that exists on the screen: its time may run faster. */
+  readonly practice?: PracticeSpeed;
+}
+
+export interface PracticeSpeed {
+  /** Seconds of the machine a second of the wall, as measured. */
+  readonly pace: ReadonlySignal<number>;
+  /** While a job runs: 1 as a real machine, `fastest` as fast as the page can. */
+  setSpeed(speed: number): Promise<void>;
 }
 
 /** Signals of a link, and how they are told. */
@@ -30,6 +39,7 @@ export class LinkSignals {
   readonly state: Signal<MachineState | null> = signal(null);
   readonly events: Signal<readonly MachineEvent[]> = signal([]);
   readonly gone: Signal<string | null> = signal(null);
+  readonly pace: Signal<number> = signal(1);
 
   tell(state: MachineState, events: readonly MachineEvent[]): void {
     if (events.length > 0) this.events.value = [...this.events.value, ...events].slice(-keptEvents);
@@ -51,9 +61,13 @@ export class WorkerLink implements MachineLink {
   #nextId = 1;
   #opened = false;
   #left: Promise<void> | null = null;
+  readonly practice?: PracticeSpeed;
 
-  private constructor(worker: Worker) {
+  private constructor(worker: Worker, { kind }: EndChoice) {
     this.#worker = worker;
+    const { pace } = this.#signals;
+    if (kind === 'virtual')
+      this.practice = { pace, setSpeed: (speed) => this.#ask({ type: 'speed', speed }) };
     worker.addEventListener('message', ({ data }: MessageEvent<FromMachineWorker>) => this.#hear(data));
     worker.addEventListener('error', () =>
       this.#end('The driver stopped unexpectedly. If the machine moves, switch it off.'),
@@ -66,7 +80,7 @@ export class WorkerLink implements MachineLink {
       type: 'module',
       name: 'machine',
     });
-    const link = new WorkerLink(worker);
+    const link = new WorkerLink(worker, end);
     const module = new URL('wasm/machines.mjs', document.baseURI).href;
     try {
       await link.#ask({ type: 'open', module, options, end });
@@ -98,7 +112,10 @@ export class WorkerLink implements MachineLink {
   }
 
   #hear(message: FromMachineWorker): void {
-    if (message.type === 'state') return this.#signals.tell(message.state, message.events);
+    if (message.type === 'state') {
+      if (message.pace !== undefined) this.#signals.pace.value = message.pace;
+      return this.#signals.tell(message.state, message.events);
+    }
     if (message.type === 'gone') return this.#end(message.why ?? '');
     const waiting = this.#waiting.get(message.id);
     this.#waiting.delete(message.id);

@@ -18,6 +18,8 @@ export type ToMachineWorker =
   | { readonly type: 'command'; readonly id: number; readonly command: MachineCommand }
   | { readonly type: 'load'; readonly id: number; readonly name: string; readonly job: Uint8Array }
   | { readonly type: 'trip'; readonly id: number }
+  /** Of a practice machine: seconds of its time a second, while a job runs. */
+  | { readonly type: 'speed'; readonly id: number; readonly speed: number }
   | { readonly type: 'close'; readonly id: number };
 
 export type FromMachineWorker =
@@ -26,5 +28,11 @@ export type FromMachineWorker =
       readonly id: number;
       readonly error: { readonly code: string; readonly where: string; readonly message: string } | null;
     }
-  | { readonly type: 'state'; readonly state: MachineState; readonly events: readonly MachineEvent[] }
+  | {
+      readonly type: 'state';
+      readonly state: MachineState;
+      readonly events: readonly MachineEvent[];
+      /** Of a practice machine: seconds of its time a second of the wall, as measured. */
+      readonly pace?: number;
+    }
   | { readonly type: 'gone'; readonly why: string | null };

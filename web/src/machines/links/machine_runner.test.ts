@@ -60,6 +60,94 @@ describe.skipIf(!existsSync(module))('a machine in its worker', () => {
     expect(events.some(({ event, text }) => event === 'sent' && text === 'G1X40')).toBe(true);
   });
 
+  /** Ready for a job of two strokes of 30 mm at 10 mm/s: six seconds of a real machine. */
+  async function readyForJob(): Promise<void> {
+    page = new Page();
+    await page.ask({ type: 'open', module, options: { controller: 'grbl' }, end: { kind: 'virtual' } });
+    await page.until(() => page.state.connection === 'ready' && page.state.phase === 'alarm');
+    await page.command({ do: 'home', confirmed: true });
+    await page.until(() => page.state.position_known && page.state.phase === 'idle');
+    const job = new TextEncoder().encode('G21G90\nM4S300\nG0X20Y20\nG1X50F600\nG1Y50\nM5\n');
+    await page.ask({ type: 'load', name: 'line.gcode', job });
+  }
+  const pace = () => {
+    const last = page.said.findLast((said) => said.type === 'state');
+    return last?.type === 'state' ? last.pace : undefined;
+  };
+  /** Seconds on the wall and of the machine. */
+  async function runIt(during: () => Promise<void> = () => Promise.resolve()): Promise<[number, number]> {
+    const start_ms = performance.now();
+    expect(await page.command({ do: 'start', confirmed: true })).toBeNull();
+    await during();
+    await page.until(() => page.state.job?.ended === 'done');
+    return [(performance.now() - start_ms) / 1000, page.state.job?.seconds ?? 0];
+  }
+
+  it('a practice job takes as long in the machine’s time at every speed', { timeout: 60_000 }, async () => {
+    await readyForJob();
+    const [slow_s, real_s] = await runIt();
+    expect(real_s).toBeGreaterThan(6);
+    expect(Math.abs(slow_s - real_s)).toBeLessThan(0.2 * real_s + 0.5);
+    for (const speed of [4, 16, Infinity]) {
+      expect(await page.ask({ type: 'speed', speed })).toBeNull();
+      const [wall_s, machine_s] = await runIt();
+      expect(wall_s).toBeLessThan(0.6 * slow_s);
+      expect(Math.abs(machine_s - real_s)).toBeLessThan(0.5);
+      expect(page.state.work_mm?.[1]).toBeCloseTo(50, 3);
+    }
+    // In the middle of a run: faster, slower, faster.
+    const [wall_s, machine_s] = await runIt(async () => {
+      for (const speed of [4, 1, 16]) {
+        expect(await page.ask({ type: 'speed', speed })).toBeNull();
+        await new Promise((resolve) => setTimeout(resolve, 250));
+      }
+    });
+    expect(wall_s).toBeLessThan(0.6 * slow_s);
+    expect(Math.abs(machine_s - real_s)).toBeLessThan(0.5);
+  });
+
+  it('a stop is obeyed at once, and a pause lasts as long as on the wall', { timeout: 60_000 }, async () => {
+    await readyForJob();
+    const job = new TextEncoder().encode('G21G90\nM4S300\n' + 'G1X50F600\nG1X20\n'.repeat(2000));
+    await page.ask({ type: 'load', name: 'long.gcode', job });
+    expect(await page.ask({ type: 'speed', speed: Infinity })).toBeNull();
+    expect(await page.command({ do: 'start', confirmed: true })).toBeNull();
+    await page.until(() => (page.state.job?.seconds ?? 0) > 30);
+    expect(pace()).toBeGreaterThan(16);
+    expect(await page.command({ do: 'pause' })).toBeNull();
+    await page.until(() => page.state.phase === 'paused');
+    const before = page.state.job?.seconds ?? 0;
+    await new Promise((resolve) => setTimeout(resolve, 1000));
+    const paused_s = (page.state.job?.seconds ?? 0) - before;
+    expect(paused_s).toBeGreaterThan(0.5);
+    expect(paused_s).toBeLessThan(2);
+    expect(await page.command({ do: 'resume', confirmed: true })).toBeNull();
+    await page.until(() => (page.state.job?.seconds ?? 0) > before + 60);
+    const stopped_ms = performance.now();
+    expect(await page.command({ do: 'stop' })).toBeNull();
+    expect(performance.now() - stopped_ms).toBeLessThan(200);
+    expect(page.state.job?.ended).toBe('stopped');
+    expect(page.state.job?.acknowledged).toBeLessThan(4000);
+    await page.until(() => ['idle', 'alarm'].includes(page.state.phase));
+    expect(page.state.laser_on).not.toBe(true);
+  });
+
+  it('a real machine has the wall’s time, and no other', async () => {
+    const port = {
+      readable: new ReadableStream<Uint8Array>(),
+      writable: new WritableStream<Uint8Array>(),
+      open: () => Promise.resolve(),
+      close: () => Promise.resolve(),
+      getInfo: () => ({}),
+    };
+    page = new Page({ serial: { getPorts: () => Promise.resolve([port]) } });
+    await page.ask({ type: 'open', module, options: {}, end: { kind: 'serial', index: 0, baud: 115200 } });
+    expect(await page.ask({ type: 'speed', speed: 16 })).toBe(
+      'Only a practice machine can run faster than real.',
+    );
+    expect(pace()).toBeUndefined();
+  });
+
   it('says that a port is gone, and what that means', { timeout: 20_000 }, async () => {
     const written: string[] = [];
     const opened: ReadableStreamDefaultController<Uint8Array>[] = [];

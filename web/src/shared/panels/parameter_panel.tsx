@@ -15,7 +15,7 @@ export interface ParameterPanelProps {
   readonly errors: Readonly<Record<string, string>>;
   readonly onPreview: (name: string, value: Json) => void;
   readonly onCommit: () => void;
-  /** Put in front of a group's parameters. */
+  /** Put in front of a group's parameters, also where that is folded. */
   readonly groupHead?: Readonly<Record<string, ComponentChildren>>;
   /** Takes the values of a preset; left out: no presets are offered. */
   readonly onPreset?: (values: JsonObject, label: string) => void;
@@ -99,6 +99,7 @@ function Folded({ title, members, panel }: FoldedProps) {
         <span>{members.length}</span>
       </button>
       <section id={id} class="section" hidden={!open} aria-label={title}>
+        {open ? panel.groupHead?.[title] : null}
         {open ? <Presets group={title} panel={panel} /> : null}
         {open ? members.map((entry) => <Control key={entry[0]} entry={entry} {...panel} />) : null}
       </section>

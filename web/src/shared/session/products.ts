@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What further operations make of a full result: prints, moulds, plans.
-import type { Catalog, JobInput, Operation } from '../../jobs/contract';
+import type { Catalog, JobInput, JsonObject, Operation } from '../../jobs/contract';
 import { findOperation, JobError } from '../../jobs/contract';
 import type { BlobReference } from '../../project/document';
 import type { CraftResult, RoomCommands, RoomDocument } from './craft_document';
@@ -38,7 +38,7 @@ export function offeredTogether(
 }
 
 export function productOf(
-  { products, parameters }: RoomWithProducts,
+  { products, parameters }: Pick<RoomWithProducts, 'products' | 'parameters'>,
   from: string | null,
   operation: Operation | undefined,
 ): Product | null {
@@ -73,15 +73,19 @@ export interface ProductRequest {
   readonly beside: readonly string[];
   /** In words. */
   readonly label: string;
+  /** Those in force, where they are other ones than the room's document has. */
+  readonly parameters?: JsonObject;
 }
 
 /** The bytes of an output, made where nobody has. Null: failed or cancelled, which the page has said. */
 export async function productBytes<D extends RoomWithProducts>(
   session: RoomSession<D>,
-  { operation, from, inputs, output, beside, label }: ProductRequest,
+  { operation, from, inputs, output, beside, label, parameters: inForce }: ProductRequest,
 ): Promise<Uint8Array<ArrayBuffer> | null> {
   const { projects } = session.services;
-  const kept = productOf(session.document.value, from, operation)?.outputs[output];
+  const { products, parameters: own } = session.document.value;
+  const asked = inForce ?? own;
+  const kept = productOf({ products, parameters: asked }, from, operation)?.outputs[output];
   if (kept && (await projects.blobs.has(kept.blob))) return await projects.blobs.read(kept.blob);
   const declared = operation.outputs.map(({ name }) => name);
   const outputs = [...new Set([output, ...beside])].filter((name) => declared.includes(name));
@@ -90,7 +94,7 @@ export async function productBytes<D extends RoomWithProducts>(
     label,
     async (options) => {
       const backend = readyWorker(session.services) ?? session.services.browser;
-      const parameters = known(operation, session.document.value.parameters);
+      const parameters = known(operation, asked);
       const start = performance.now();
       const done = await backend.run({ operation: operation.name, parameters, inputs, outputs }, options);
       const made: Record<string, BlobReference> = {};

@@ -49,9 +49,9 @@ export const zippable: Tutorial = {
       [{ shown: button('Send to a machine') }],
     ),
     room.enter(
-      'Set **Sheet width** to the width of your cutter, here 400 mm, and press Enter.',
-      field('Sheet width'),
-      '400',
+      'The sheets are as large as the bed of the laser that is chosen in Machines. For a smaller piece of cloth set **Sheet depth**, here 350 mm, and press Enter.',
+      field('Sheet depth'),
+      '350',
       [{ shown: button('Send to a machine') }],
     ),
     room.press(

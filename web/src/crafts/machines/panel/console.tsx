@@ -100,7 +100,8 @@ function JobHistory({ session }: { readonly session: MachinesSession }) {
           <li key={job.id}>
             <strong class="clip">{job.name}</strong>
             <span>
-              {job.machine}, {new Date(1000 * job.started_unix_s).toLocaleString()}
+              {job.machine}
+              {job.practice ? ', practice' : ''}, {new Date(1000 * job.started_unix_s).toLocaleString()}
             </span>
             <span>
               {job.ended === null ? 'interrupted' : endWords[job.ended]}

@@ -17,6 +17,7 @@ import {
   stop,
 } from '../actions';
 import { ConnectMenu, ProfileMenu } from './machine_menus';
+import { PracticeSpeed } from './practice_speed';
 import type { MachinesSession } from '../machines_session';
 import { stateWords } from './state_words';
 
@@ -57,6 +58,7 @@ export function MachinePanel({ session }: { readonly session: MachinesSession })
           <>
             <Position state={state} withZ={session.isMill} />
             <Beam state={state} isMill={session.isMill} />
+            <PracticeSpeed session={session} />
             <div class="machine-buttons">
               <Button
                 icon="home"

@@ -22,7 +22,7 @@ export interface SheetsProps {
 export function Sheets({ session, drawing, onSendToMachine }: SheetsProps) {
   const design = session.designFile.value;
   const plan = session.plan.value;
-  const { parameters } = session.document.value;
+  const parameters = session.sheets.parameters.value;
   const idle = session.activity.value.kind === 'idle';
   useEffect(() => {
     const key = JSON.stringify([design?.blob, parameters]);
@@ -144,7 +144,7 @@ function planWords(session: ZippableSession): string {
   const pieces = Array.isArray(report['pieces']) ? report['pieces'].length : null;
   const [sheets, zipper] = [figure(report, 'sheets'), figure(report, 'zipper_to_cut_mm')];
   const bed = ['bed_x_mm', 'bed_y_mm']
-    .map((name) => session.value(name))
+    .map((name) => session.sheets.value(name))
     .filter((mm) => typeof mm === 'number');
   const size =
     bed.length === 2 ? ` of ${withUnit(bed.map((mm) => formatNumber(mm, 3)).join(' × '), 'mm')}` : '';

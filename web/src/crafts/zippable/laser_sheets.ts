@@ -2,40 +2,47 @@
 // Keeps the sheets in step with the chosen laser, and the project with the laser that it was laid out for.
 import type { ReadonlySignal } from '@preact/signals';
 import { computed, effect, untracked } from '@preact/signals';
-import type { Json, JsonObject } from '../../jobs/contract';
+import type { Json, JsonObject, Operation } from '../../jobs/contract';
+import { findOperation } from '../../jobs/contract';
 import type { LaserSheet } from '../../machines/laser_sheet';
 import { sameBed } from '../../machines/laser_sheet';
 import { inForce } from '../../shared/session/craft_document';
+import type { RoomSession } from '../../shared/session/room_session';
 import { automaticSizes, hasPlan, laserOf, planParameters } from './sheet_size';
+import type { ZippableDocument } from './zippable_document';
 import { layOutFor, noteLaser, planning } from './zippable_document';
-import type { ZippableSession } from './zippable_session';
 
 export class LaserSheets {
-  readonly #session: ZippableSession;
+  readonly #session: RoomSession<ZippableDocument>;
   /** The chosen laser; null while it is not known. */
   readonly chosen: ReadonlySignal<LaserSheet | null>;
   /** The one that plans are laid out for; null where the operation's own sizes count. */
   readonly laser = computed(() => laserOf(this.#session.document.value, this.chosen.value));
   /** What plans are made with. */
   readonly parameters = computed((): JsonObject => {
-    const operation = this.#session.operationNamed(planning);
+    const operation = this.#planning();
     return operation ? planParameters(operation, this.#session.document.value, this.chosen.value) : {};
   });
   /** What the values come to that the maker left open. */
   readonly automatic = computed((): Record<string, number> => {
-    const operation = this.#session.operationNamed(planning);
+    const operation = this.#planning();
     return operation ? automaticSizes(operation, this.#session.document.value, this.chosen.value) : {};
   });
 
-  constructor(session: ZippableSession, chosen: ReadonlySignal<LaserSheet | null>) {
+  constructor(session: RoomSession<ZippableDocument>, chosen: ReadonlySignal<LaserSheet | null>) {
     this.#session = session;
     this.chosen = chosen;
     this.#follow();
   }
 
+  #planning(): Operation | undefined {
+    const catalog = this.#session.services.catalog.value;
+    return catalog ? findOperation(catalog, planning) : undefined;
+  }
+
   /** In force for plans, what the laser says included. */
   value(name: string): Json {
-    const operation = this.#session.operationNamed(planning);
+    const operation = this.#planning();
     return operation ? inForce(operation, this.parameters.value, name) : null;
   }
 

@@ -46,6 +46,7 @@ export interface ViewportPanelProps {
 export function ViewportPanel({ session, tool, onViewport, notes, children }: ViewportPanelProps) {
   const container = useRef<HTMLDivElement>(null);
   const foot = useRef<HTMLDivElement>(null);
+  const list = useRef<HTMLDivElement>(null);
   const handle = useRef<HTMLButtonElement>(null);
   const viewport = useRef<Viewport | null>(null);
   const mover = useMemo(() => new ModelMover(session), [session]);
@@ -86,7 +87,7 @@ export function ViewportPanel({ session, tool, onViewport, notes, children }: Vi
         const there = canBeMoved(session) && tool.sides.peek() === null;
         placeHandle(made, turner, handle.current, there);
         placeTurnHandles(made, turner, turnHandles, there);
-        faces.draw();
+        faces.place();
       },
       onStatus: ({ state }) => (drawing.value = state === 'ready'),
     });
@@ -96,7 +97,8 @@ export function ViewportPanel({ session, tool, onViewport, notes, children }: Vi
     const faces = new FaceOverlay(session, tool, made);
     // While the model is in hand the picture stays as it is, whatever notes come and go.
     const makeRoom = () => {
-      if (!dragging.peek()) made.setFreeRectangle(freeRectangle(foot.current));
+      const besides = tool.sides.value === null ? null : list.current;
+      if (!dragging.peek()) made.setFreeRectangle(freeRectangle(foot.current, besides));
     };
     const stop = [
       keepDrawn(
@@ -106,7 +108,7 @@ export function ViewportPanel({ session, tool, onViewport, notes, children }: Vi
         () => tool.sides.value !== null,
       ),
       keepRingDrawn(made, turner),
-      effect(() => faces.draw()),
+      effect(() => faces.mark()),
       () => faces.dispose(),
       effect(() => {
         if (!dragging.value) makeRoom();
@@ -154,7 +156,9 @@ export function ViewportPanel({ session, tool, onViewport, notes, children }: Vi
           </span>
         </div>
       ) : null}
-      <FaceList session={session} tool={tool} />
+      <div ref={list}>
+        <FaceList session={session} tool={tool} />
+      </div>
       {visible && !choosing ? (
         <SidePanel session={session} url={watched.extras.value.printed?.url ?? null} />
       ) : null}
@@ -222,9 +226,11 @@ function placeHandle(
   if (at) element.style.translate = `${at.xPx.toFixed(1)}px ${at.yPx.toFixed(1)}px`;
 }
 
-/** What floats stays off the object. */
-function freeRectangle(foot: Element | null): Insets {
-  const height = foot?.getBoundingClientRect().height ?? 0;
+/** What floats stays off the object: at the foot, and the list of faces at the right or, on a phone, at the foot. */
+function freeRectangle(foot: Element | null, list: Element | null = null): Insets {
+  const floating = list?.firstElementChild?.getBoundingClientRect();
+  const height = Math.max(foot?.getBoundingClientRect().height ?? 0, narrow() ? (floating?.height ?? 0) : 0);
   const bottom = height > 0 ? height + 20 : 24;
-  return narrow() ? { left: 10, top: 64, right: 10, bottom } : { left: 24, top: 88, right: 24, bottom };
+  if (narrow()) return { left: 10, top: 64, right: 10, bottom };
+  return { left: 24, top: 88, right: floating ? floating.width + 36 : 24, bottom };
 }

@@ -7,8 +7,8 @@ import type { FlatSide, Vec3 } from '../api';
 /** Neighbours that lean less than this to the largest triangle belong to the same side. */
 const sameSide = Math.cos(Math.PI / 180);
 /** Of the hull's surface: smaller sides are no feet. */
-const leastShare = 0.004;
-const mostSides = 30;
+const leastShare = 0.005;
+const mostSides = 24;
 
 /** The largest first. */
 export function findFlatSides(positions: ArrayLike<number>): FlatSide[] {

@@ -33,8 +33,7 @@ export function FaceList({ session, tool }: { session: ThermoformSession; tool: 
   if (sides === null) return null;
   const [a = 0, b = 0, c = 0] = session.placement.value ?? [];
   const scale = Math.hypot(a, b, c);
-  const area = (of: number) =>
-    withUnit(formatNumber((of * scale ** 2) / square_mm_in_square_cm, of * scale ** 2 < 1000 ? 2 : 3), 'cm²');
+  const area = (of: number) => withUnit(formatNumber((of * scale ** 2) / square_mm_in_square_cm, 2), 'cm²');
   const key = (event: KeyboardEvent) => {
     const last = sides.length - 1;
     const at = pointed ?? -1;

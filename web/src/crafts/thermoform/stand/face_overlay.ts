@@ -69,11 +69,11 @@ export class FaceOverlay {
     this.#svg.remove();
   }
 
-  /** With the camera as it is now. */
-  draw(): void {
-    const sides = this.#tool.sides.value;
-    const pointed = this.#tool.pointed.value;
-    const placement = this.#session.placement.value;
+  /** With the camera of the picture that was just drawn. */
+  place(): void {
+    const sides = this.#tool.sides.peek();
+    const placement = this.#session.placement.peek();
+    if (sides === null && this.#faces.length === 0) return;
     this.#faces = (placement && sides ? sides : []).map(({ outline }) => {
       const pixels = outline.map((point): Pixel | null => {
         const at = this.#viewport.project(pointAt(placement ?? [], point));
@@ -85,11 +85,20 @@ export class FaceOverlay {
     while (this.#svg.childElementCount > this.#faces.length) this.#svg.lastElementChild?.remove();
     while (this.#svg.childElementCount < this.#faces.length)
       this.#svg.append(document.createElementNS('http://www.w3.org/2000/svg', 'polygon'));
-    this.#faces.forEach(({ outline, facing }, i) => {
-      const polygon = this.#svg.children[i];
+    this.#faces.forEach(({ outline }, i) => {
       const points = outline.map(([x, y]) => `${x.toFixed(1)},${y.toFixed(1)}`).join(' ');
-      polygon?.setAttribute('points', points);
-      polygon?.setAttribute('class', `${facing ? 'facing' : 'behind'} ${i === pointed ? 'pointed' : ''}`);
+      this.#svg.children[i]?.setAttribute('points', points);
+    });
+    this.mark();
+  }
+
+  /** Which face is pointed at; without sides nothing is shown, whatever was drawn last. */
+  mark(): void {
+    const pointed = this.#tool.pointed.value;
+    this.#svg.toggleAttribute('hidden', this.#tool.sides.value === null);
+    this.#faces.forEach(({ facing }, i) => {
+      const name = `${facing ? 'facing' : 'behind'}${i === pointed ? ' pointed' : ''}`;
+      this.#svg.children[i]?.setAttribute('class', name);
     });
   }
 

@@ -32,7 +32,25 @@ interface Extremes {
   readonly high: Vector;
 }
 
+/** Of the rotations asked for last: while a model is dragged, the same ones are asked for again and again. */
+const known = new WeakMap<object, Map<string, Extremes>>();
+const mostKnown = 8;
+
 function extremes(positions: ArrayLike<number>, r: Rotation): Extremes {
+  const ofMesh = known.get(positions) ?? new Map<string, Extremes>();
+  known.set(positions, ofMesh);
+  const key = r.join();
+  const found = ofMesh.get(key) ?? findExtremes(positions, r);
+  ofMesh.delete(key);
+  ofMesh.set(key, found); // the newest last
+  for (const old of ofMesh.keys()) {
+    if (ofMesh.size <= mostKnown) break;
+    ofMesh.delete(old);
+  }
+  return found;
+}
+
+function findExtremes(positions: ArrayLike<number>, r: Rotation): Extremes {
   const low: [number, number, number] = [Infinity, Infinity, Infinity];
   const high: [number, number, number] = [-Infinity, -Infinity, -Infinity];
   for (let i = 0; i + 2 < positions.length; i += 3) {
@@ -89,7 +107,7 @@ export function stoodOtherwise(
   const now = placeModel({ ...values, ...changed }, positions);
   if (before === null || now === null) return null;
   if (Math.abs(now.scale / before.scale - 1) < 1e-9) return changed;
-  return { ...changed, size_mm: Number((before.scale * now.extent).toFixed(3)) };
+  return { ...changed, size_mm: Number((before.scale * now.extent).toFixed(2)) };
 }
 
 /** The turn of the placement in force. */

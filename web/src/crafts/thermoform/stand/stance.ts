@@ -93,13 +93,14 @@ export function rotationOf({ up, turn_deg }: Stance): Rotation | null {
 
 const decimals = (value: number, count: number): number => Number(value.toFixed(count)) || 0;
 
-/** The parameters of a rotation, with a turn from -180 to 180 degrees. */
+/** The parameters of a rotation, with a turn from -180 to 180 degrees, to a hundredth. `up` is as exact as numbers are: a
+ *  face that was put on the plate lies flat. */
 export function stanceOf(r: Rotation): Stance {
   const up = row(r, 2).map((value) => decimals(value, 12)) as unknown as Vector;
   // What turns the front that the core chooses to where it is.
   const upright = standing(up) as Rotation;
   const x = turned(r, row(upright, 0));
-  return { up, turn_deg: decimals((Math.atan2(x[1], x[0]) * 180) / Math.PI, 6) };
+  return { up, turn_deg: decimals((Math.atan2(x[1], x[0]) * 180) / Math.PI, 2) };
 }
 
 /** -180 to 180 degrees. */

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The handles on the rings: dragged, or turned with the arrow keys.
 import { effect } from '@preact/signals';
-import { hideTip, Icon, tipHandlers } from '../../../ui';
+import { formatNumber, hideTip, Icon, tipHandlers, withUnit } from '../../../ui';
 import type { Curve, Viewport } from '../../../view';
 import type { ThermoformSession } from '../thermoform_session';
 import type { Handle } from './ring';
@@ -29,7 +29,7 @@ export function TurnHandles({ session, turner, viewport, elements }: TurnHandles
     return [event.clientX - (box?.left ?? 0), event.clientY - (box?.top ?? 0)];
   };
   const held = turner.held.value;
-  const turn = `${String(Number(session.value('turn_deg') ?? 0))}°`;
+  const turn = withUnit(formatNumber(Number(session.value('turn_deg') ?? 0), 3), '°');
   return (
     <>
       {handles.map((handle) => (
@@ -69,7 +69,9 @@ export function TurnHandles({ session, turner, viewport, elements }: TurnHandles
         >
           <Icon name={icons[handle]} small />
           {held?.handle === handle ? (
-            <span class="turn-angle">{handle === 'turn' ? turn : `${String(Math.round(held.by_deg))}°`}</span>
+            <span class="turn-angle">
+              {handle === 'turn' ? turn : withUnit(formatNumber(held.by_deg, 3), '°')}
+            </span>
           ) : null}
         </button>
       ))}

@@ -1,0 +1,18 @@
+import { chromium } from '@playwright/test';
+const b = await chromium.launch({ executablePath:'/usr/bin/chromium', args:['--headless=new','--no-sandbox'] });
+const c = await b.newContext({ viewport:{width:1280,height:800}, reducedMotion:'reduce' });
+const p = await c.newPage();
+p.on('pageerror', e=>console.log('ERR',e));
+await p.goto('http://127.0.0.1:5722/');
+await p.getByRole('link',{name:'Thermoform',exact:true}).click();
+await p.locator('.gallery button',{hasText:process.argv[2]??'Pyramid'}).click();
+await p.locator('footer strong').getByText('Preview up to date').waitFor({timeout:120000});
+await p.getByRole('button',{name:'Place on face'}).click();
+await p.getByRole('listbox').waitFor();
+await p.waitForTimeout(500); await p.screenshot({path:'/tmp/looks/d1.png'});
+await p.waitForTimeout(4000); await p.screenshot({path:'/tmp/looks/d2.png'});
+await p.keyboard.press('ArrowDown');
+await p.waitForTimeout(500); await p.screenshot({path:'/tmp/looks/d3.png'});
+console.log(await p.getByRole('option').allTextContents());
+console.log(await p.locator('.face-overlay').innerHTML());
+await b.close();

@@ -4,9 +4,9 @@
 import type { Viewport } from '../../../view';
 import type { ThermoformSession } from '../thermoform_session';
 import type { FaceTool } from './face_tool';
+import type { Pixel } from './outline';
+import { distanceTo, signedArea } from './outline';
 import { pointAt } from './place_model';
-
-export type Pixel = readonly [number, number];
 
 interface DrawnFace {
   readonly outline: readonly Pixel[];
@@ -16,27 +16,6 @@ interface DrawnFace {
 /** Beside a face this far it still is meant. */
 const slack_px = 14;
 const clickSlop_px = 4;
-
-/** Twice the area of an outline in pixels, y down; positive where it is clockwise to the eye. */
-export const signedArea = (outline: readonly Pixel[]): number =>
-  outline.reduce((sum, [x, y], i) => {
-    const [nextX, nextY] = outline[(i + 1) % outline.length] ?? [x, y];
-    return sum + x * nextY - nextX * y;
-  }, 0);
-
-/** How far a point is from an outline, px; 0 inside. */
-export function distanceTo(outline: readonly Pixel[], [x, y]: Pixel): number {
-  let inside = false;
-  let least = Infinity;
-  outline.forEach(([ax, ay], i) => {
-    const [bx, by] = outline[(i + 1) % outline.length] ?? [ax, ay];
-    if (ay > y !== by > y && x < ax + ((y - ay) * (bx - ax)) / (by - ay)) inside = !inside;
-    const [dx, dy] = [bx - ax, by - ay];
-    const share = Math.min(1, Math.max(0, ((x - ax) * dx + (y - ay) * dy) / (dx * dx + dy * dy || 1)));
-    least = Math.min(least, Math.hypot(x - ax - share * dx, y - ay - share * dy));
-  });
-  return inside ? 0 : least;
-}
 
 export class FaceOverlay {
   readonly #session: ThermoformSession;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The handles on the rings: dragged, or turned with the arrow keys.
 import { effect } from '@preact/signals';
-import { formatNumber, hideTip, Icon, tipHandlers, withUnit } from '../../../ui';
+import { formatOnStep, hideTip, Icon, tipHandlers, withUnit } from '../../../ui';
 import type { Curve, Viewport } from '../../../view';
 import type { ThermoformSession } from '../thermoform_session';
 import type { Handle } from './ring';
@@ -16,6 +16,9 @@ const keys: Readonly<Record<Handle, string>> = {
 };
 const icons = { turn: 'turn', sideways: 'tiltSideways', forwards: 'tiltForwards' } as const;
 
+/** To the degree where it is whole. */
+const degrees = (value: number): string => withUnit(formatOnStep(value, 1), '°');
+
 export interface TurnHandlesProps {
   readonly session: ThermoformSession;
   readonly turner: ModelTurner;
@@ -29,7 +32,7 @@ export function TurnHandles({ session, turner, viewport, elements }: TurnHandles
     return [event.clientX - (box?.left ?? 0), event.clientY - (box?.top ?? 0)];
   };
   const held = turner.held.value;
-  const turn = withUnit(formatNumber(Number(session.value('turn_deg') ?? 0), 3), '°');
+  const turn = degrees(Number(session.value('turn_deg') ?? 0));
   return (
     <>
       {handles.map((handle) => (
@@ -69,9 +72,7 @@ export function TurnHandles({ session, turner, viewport, elements }: TurnHandles
         >
           <Icon name={icons[handle]} small />
           {held?.handle === handle ? (
-            <span class="turn-angle">
-              {handle === 'turn' ? turn : withUnit(formatNumber(held.by_deg, 3), '°')}
-            </span>
+            <span class="turn-angle">{handle === 'turn' ? turn : degrees(held.by_deg)}</span>
           ) : null}
         </button>
       ))}

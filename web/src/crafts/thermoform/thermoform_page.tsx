@@ -30,7 +30,7 @@ const look: Look = { direction: [0.14, 0.95, -0.98], up: [0, 0, 1] };
 
 export function ThermoformPage({ session, onChooseFile }: ThermoformPageProps) {
   const viewport = useSignal<Viewport | null>(null);
-  const picture = useModelPicture(session, viewport, look);
+  const picture = useModelPicture(session, viewport, look, session.placement);
   useResultPictures(session, viewport, session.shown, () => look);
   useRoomKeys(session, () => ({
     solve: () => void solveInFull(session),

@@ -231,6 +231,6 @@ function freeRectangle(foot: Element | null, list: Element | null = null): Inset
   const floating = list?.firstElementChild?.getBoundingClientRect();
   const height = Math.max(foot?.getBoundingClientRect().height ?? 0, narrow() ? (floating?.height ?? 0) : 0);
   const bottom = height > 0 ? height + 20 : 24;
-  if (narrow()) return { left: 10, top: 64, right: 10, bottom };
+  if (narrow()) return { left: 10, top: floating ? 10 : 64, right: 10, bottom };
   return { left: 24, top: 88, right: floating ? floating.width + 36 : 24, bottom };
 }

@@ -7,8 +7,8 @@ import type { FlatSide, Vec3 } from '../api';
 /** Neighbours that lean less than this to the largest triangle belong to the same side. */
 const sameSide = Math.cos(Math.PI / 180);
 /** Of the hull's surface: smaller sides are no feet. */
-const leastShare = 0.005;
-const mostSides = 24;
+const minShare = 0.005;
+const maxSides = 24;
 
 /** The largest first. */
 export function findFlatSides(positions: ArrayLike<number>): FlatSide[] {
@@ -26,9 +26,9 @@ export function findFlatSides(positions: ArrayLike<number>): FlatSide[] {
     sides.push(sideOf(grow(seed, taken)));
   }
   return sides
-    .filter(({ area }) => area >= leastShare * total)
+    .filter(({ area }) => area >= minShare * total)
     .sort((a, b) => b.area - a.area)
-    .slice(0, mostSides);
+    .slice(0, maxSides);
 }
 
 /** The seed and all that is reached from it without leaning away. */

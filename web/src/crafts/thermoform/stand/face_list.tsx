@@ -54,7 +54,7 @@ export function FaceList({ session, tool }: { session: ThermoformSession; tool: 
     event.stopPropagation();
   };
   return (
-    <section class="float top-right panel face-list" aria-label="Place on face">
+    <section class="float panel face-list" aria-label="Place on face">
       <header>
         <h3>Place on face</h3>
         <IconButton icon="close" label="Leave “Place on face”" keys="Escape" onClick={() => tool.leave()} />

@@ -6,7 +6,7 @@ import type { Rotation, Stance, Vector } from './stance';
 import { rotationOf, stanceOf, standing } from './stance';
 
 /** As the core's automatic size: a file's own size above 10 mm that fits the opening, else 100 mm. */
-const automatic = { least_mm: 10, usual_mm: 100 } as const;
+const automatic = { min_mm: 10, usual_mm: 100 } as const;
 
 export interface Placed {
   /** mm for each unit of the file. */
@@ -34,7 +34,7 @@ interface Extremes {
 
 /** Of the rotations asked for last: while a model is dragged, the same ones are asked for again and again. */
 const known = new WeakMap<object, Map<string, Extremes>>();
-const mostKnown = 8;
+const maxKnown = 8;
 
 function extremes(positions: ArrayLike<number>, r: Rotation): Extremes {
   const ofMesh = known.get(positions) ?? new Map<string, Extremes>();
@@ -44,7 +44,7 @@ function extremes(positions: ArrayLike<number>, r: Rotation): Extremes {
   ofMesh.delete(key);
   ofMesh.set(key, found); // the newest last
   for (const old of ofMesh.keys()) {
-    if (ofMesh.size <= mostKnown) break;
+    if (ofMesh.size <= maxKnown) break;
     ofMesh.delete(old);
   }
   return found;
@@ -91,7 +91,7 @@ function scaleOf(values: JsonObject, extent: number, [x, y]: Vector): number {
   const size_mm = values['size_mm'] ?? null;
   if (size_mm !== null) return Number(size_mm) / extent;
   const [openingX, openingY] = [number(values, 'clamp_opening_x_mm'), number(values, 'clamp_opening_y_mm')];
-  return extent < automatic.least_mm || x > openingX || y > openingY ? automatic.usual_mm / extent : 1;
+  return extent < automatic.min_mm || x > openingX || y > openingY ? automatic.usual_mm / extent : 1;
 }
 
 /** The parameters that stand a model otherwise and keep it as large as it is. An automatic size stays automatic where

@@ -18,13 +18,13 @@ export interface Ring {
 }
 
 const clear_mm = 10;
-const least_mm = 30;
+const min_radius_mm = 30;
 
 /** Around a model that stands in `box`. */
 export function ringAround({ low, high }: Box, handle: Handle): Ring {
   const half = [0, 1, 2].map((k) => ((high[k] ?? 0) - (low[k] ?? 0)) / 2) as unknown as Vector;
   const middle: Vector = [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, (low[2] + high[2]) / 2];
-  const radius = (a: number, b: number) => Math.max(least_mm, Math.hypot(a, b) + clear_mm);
+  const radius = (a: number, b: number) => Math.max(min_radius_mm, Math.hypot(a, b) + clear_mm);
   if (handle === 'turn')
     return {
       centre: [middle[0], middle[1], 0],
@@ -64,12 +64,12 @@ export function pointOn(ring: Ring, angle_deg: number, radius_mm = ring.radius_m
 }
 
 /** Rays that run more along the ring's plane than this give no reliable angle. */
-const leastSlope = 0.35;
+const minSlope = 0.35;
 
 /** The angle under which a ray of sight meets the ring's plane; null where it runs along it. */
 export function angleSeen(ring: Ring, { originMm, direction }: Ray): number | null {
   const slope = dot(direction, ring.axis) / Math.hypot(...direction);
-  if (Math.abs(slope) < leastSlope) return null;
+  if (Math.abs(slope) < minSlope) return null;
   const from: Vector = [
     originMm[0] - ring.centre[0],
     originMm[1] - ring.centre[1],

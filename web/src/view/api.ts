@@ -38,6 +38,17 @@ export interface MeshData {
   attributes?: Readonly<Record<string, Float32Array>>;
 }
 
+/** A flat region of a mesh's convex hull; it can stand on it. In the mesh's own axes and units. */
+export interface FlatSide {
+  /** Unit, outwards. */
+  readonly normal: Vec3;
+  readonly area: number;
+  /** Three points that touch the plate when the normal points straight down. */
+  readonly support: readonly Vec3[];
+  /** The border, point by point. */
+  readonly outline: readonly Vec3[];
+}
+
 /** The plate behind a relief: a slab whose front face is perpendicular to the looking direction. */
 export interface Plate {
   widthMm: number;
@@ -268,8 +279,8 @@ export interface ViewportApi {
 
   /** Takes the place of all fixtures before. */
   setFixtures(fixtures: readonly Fixture[]): void;
-  /** New positions for the same triangles, moved or grown but not turned. */
-  moveFixture(id: string, positions: Float32Array | Float64Array): void;
+  /** New positions for the same triangles; normals follow only what was `turned`. */
+  moveFixture(id: string, positions: Float32Array | Float64Array, turned?: boolean): void;
   /** How much of a part's own mesh hides what is behind it: 1 all, 0 nothing. */
   setOpacity(part: 'original' | 'relief', opacity: number): void;
 

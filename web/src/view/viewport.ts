@@ -59,8 +59,8 @@ export class Viewport extends ViewportBase implements ViewportApi {
     this.shapeChanged(false);
   }
 
-  moveFixture(id: string, positions: Float32Array | Float64Array): void {
-    this.stage?.moveFixture(id, positions);
+  moveFixture(id: string, positions: Float32Array | Float64Array, turned = false): void {
+    this.stage?.moveFixture(id, positions, turned);
     this.shapeChanged(false);
   }
 

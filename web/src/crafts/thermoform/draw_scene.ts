@@ -10,7 +10,7 @@ import { clampFrame, frameShadow, platform } from './clamp_frame';
 import { endOf, sheetAt, Stretching } from './film';
 import type { Extras } from './extras';
 import type { Placement } from './placement';
-import { boxOf, carriedOn, placed, placementOf, rotationOf } from './placement';
+import { boxOf, placed, rotationOf } from './placement';
 import type { Formed, ThermoformSession } from './thermoform_session';
 import { chooseViewFor, dragging, mappingOf, swiping, view } from './views';
 
@@ -30,7 +30,7 @@ function modelData(mesh: ShadedMesh, placement: Placement, texture: ImageBitmap 
   };
 }
 
-export function clampOf(session: ThermoformSession, formed: Formed): Clamp {
+function clampOf(session: ThermoformSession, formed: Formed): Clamp {
   const all = session.filled(formed.parameters);
   const [sheetX, sheetY, openingX, openingY, height] = [
     'sheet_x_mm',
@@ -40,17 +40,6 @@ export function clampOf(session: ThermoformSession, formed: Formed): Clamp {
     'clamp_height_mm',
   ].map((name) => Number(all[name] ?? 0)) as [number, number, number, number, number];
   return { sheet_mm: [sheetX, sheetY], opening_mm: [openingX, openingY], height_mm: height };
-}
-
-/** Where the model stands with the parameters in force. */
-export function placementNow(session: ThermoformSession): Placement | null {
-  const shown = session.shown.value;
-  const original = session.model.original.value;
-  if (shown === null || original === null) return null;
-  const reported = placementOf(shown.report);
-  if (reported === null) return null;
-  const [from, to] = [session.filled(shown.parameters), session.filled(session.asked.value)];
-  return carriedOn(reported, from, to, original.mesh.positions) ?? reported;
 }
 
 /** Attributes and picture of the sheet as it is in the end. */
@@ -67,18 +56,34 @@ function sheetData(formed: Formed, extras: Extras | null): MeshData {
   };
 }
 
-export function keepDrawn(viewport: Viewport, session: ThermoformSession, extras: () => Extras): () => void {
+interface DrawnModel {
+  readonly from: string;
+  readonly placement: Placement;
+  /** The turn that the model's shading was found for: it waits until the hand lets go. */
+  readonly shadedFor: Placement;
+  readonly up: string;
+  readonly frame: string;
+  readonly draft: unknown;
+  readonly picture: unknown;
+}
+
+/** `alone`: the model is looked at by itself, without the sheet. */
+export function keepDrawn(
+  viewport: Viewport,
+  session: ThermoformSession,
+  extras: () => Extras,
+  alone: () => boolean,
+): () => void {
   let drawn: { formed: Formed; printed: unknown } | null = null;
-  let model: { from: string; placement: Placement; frame: string; draft: unknown; picture: unknown } | null =
-    null;
+  let model: DrawnModel | null = null;
   let stretching: Stretching | null = null;
   let lift = 0;
 
   const drawModel = (): void => {
     const original = session.model.original.value;
     const shown = session.shown.value;
-    const placement = placementNow(session);
-    const draft = view.value === 'undercut' ? (extras().draft?.mesh ?? null) : null;
+    const placement = session.placement.value;
+    const draft = view.value === 'undercut' && !alone() ? (extras().draft?.mesh ?? null) : null;
     if (original === null || shown === null || placement === null) {
       viewport.setOriginal(null);
       viewport.setFixtures([]);
@@ -89,7 +94,8 @@ export function keepDrawn(viewport: Viewport, session: ThermoformSession, extras
     const picture = session.picture.value;
     const data = modelData(original.mesh, placement, picture);
     const { high } = boxOf(data.positions);
-    const frame = JSON.stringify([clamp, original.from]);
+    const up = dragging.value && model ? model.up : JSON.stringify(session.inForce.value['up']);
+    const frame = JSON.stringify([clamp, original.from, up]);
     const repainted = model?.picture !== picture;
     if (model?.frame !== frame || repainted) {
       viewport.setFixtures([
@@ -107,18 +113,21 @@ export function keepDrawn(viewport: Viewport, session: ThermoformSession, extras
     }
     const same =
       !repainted && model?.from === original.from && model.draft === draft && model.frame === frame;
-    const unturned = same && sameTurn(model?.placement, placement);
+    const turned = !sameTurn(model?.shadedFor, placement);
+    const anew = !same || (turned && !dragging.peek());
     if (draft) {
       if (!same) viewport.setOriginal(draft);
-    } else if (!same || (!unturned && !dragging.peek())) viewport.setOriginal(data);
+    } else if (anew) viewport.setOriginal(data);
+    else if (turned) viewport.updateOriginal(data.positions);
     else if (model?.placement.join() !== placement.join()) viewport.rescaleOriginal(data.positions);
-    model = { from: original.from, placement, frame, draft, picture };
-    moveModel(data.positions);
+    const shadedFor = anew ? placement : (model?.shadedFor ?? placement);
+    moveModel(data.positions, !sameTurn(model?.placement, placement));
+    model = { from: original.from, placement, shadedFor, up, frame, draft, picture };
   };
-  const moveModel = (positions: Float32Array | Float64Array): void => {
+  const moveModel = (positions: Float32Array | Float64Array, turned: boolean): void => {
     const down = session.moment.peek()?.platform_z_mm ?? 0;
     lift = down;
-    viewport.moveFixture('model', down === 0 ? positions : raised(positions, down));
+    viewport.moveFixture('model', down === 0 ? positions : raised(positions, down), turned);
   };
 
   const drawSheet = (): void => {
@@ -154,9 +163,9 @@ export function keepDrawn(viewport: Viewport, session: ThermoformSession, extras
     const covered = moment.phase === 'vacuum' ? moment.touching_share : 0;
     viewport.setOpacity('relief', settled ? 1 : dragging.value ? translucent : translucent + 0.35 * covered);
     if (moment.platform_z_mm !== lift) {
-      const placement = placementNow(session);
+      const placement = session.placement.value;
       const original = session.model.original.peek();
-      if (placement && original) moveModel(placed(original.mesh.positions, placement));
+      if (placement && original) moveModel(placed(original.mesh.positions, placement), false);
     }
   };
 
@@ -177,8 +186,10 @@ export function keepDrawn(viewport: Viewport, session: ThermoformSession, extras
     effect(drawMoment),
     effect(() => {
       const shown = session.shown.value;
-      viewport.setMode(view.value === 'undercut' ? 'original' : swiping.value ? 'swipe' : 'relief');
-      viewport.setColourMapping(shown && mappingOf(view.value, shown, thicknessOf(session, shown)), true);
+      const onlyModel = view.value === 'undercut' || alone();
+      viewport.setMode(onlyModel ? 'original' : swiping.value ? 'swipe' : 'relief');
+      const mapping = shown && !alone() ? mappingOf(view.value, shown, thicknessOf(session, shown)) : null;
+      viewport.setColourMapping(mapping, true);
     }),
   ];
   return () => {

@@ -4,13 +4,15 @@ import { IconButton } from '../../ui';
 import { machineProfile } from '../../shared/session/machine_profile';
 import { ModelRow } from '../../shared/panels/model_row';
 import { ParameterPanel } from '../../shared/panels/parameter_panel';
-import { placementNow } from './draw_scene';
 import { MainButton } from './export_button';
-import { boxOf, sizeBeforeTurning_mm } from './placement';
+import type { FaceTool } from './stand/face_tool';
+import { placeModel } from './stand/place_model';
+import { StandButtons } from './stand/stand_buttons';
 import type { ThermoformSession } from './thermoform_session';
 
 export interface InspectorProps {
   readonly session: ThermoformSession;
+  readonly tool: FaceTool;
   readonly picture: string | null;
   readonly onReplace: () => void;
   readonly onForm: () => void;
@@ -22,12 +24,11 @@ const openGroups = ['Placement', 'Sheet', 'Machine'];
 /** The size that the core chose: of the model before it is turned. */
 function automaticValues(session: ThermoformSession): Record<string, number> {
   const original = session.model.original.value;
-  const placement = placementNow(session);
-  if (original === null || placement === null) return {};
-  return { size_mm: sizeBeforeTurning_mm(placement, boxOf(original.mesh.positions)) };
+  const placed = original && placeModel(session.inForce.value, original.mesh.positions);
+  return placed ? { size_mm: placed.scale * placed.extent } : {};
 }
 
-export function Inspector({ session, picture, onReplace, onForm }: InspectorProps) {
+export function Inspector({ session, tool, picture, onReplace, onForm }: InspectorProps) {
   const { model, parameters } = session.document.value;
   const operation = session.operation.value;
   if (model === null || operation === null) return null;
@@ -45,6 +46,7 @@ export function Inspector({ session, picture, onReplace, onForm }: InspectorProp
           onPreset={(values, label) => session.setParameters(values, label)}
           openGroups={openGroups}
           automatic={automaticValues(session)}
+          groupHead={{ Placement: <StandButtons session={session} tool={tool} /> }}
         />
       </div>
       <div class="inspector-foot">

@@ -2,7 +2,6 @@
 // Moving the model about on the platform, by hand and by keys.
 import type { Json } from '../../jobs/contract';
 import type { Viewport } from '../../view';
-import { placementNow } from './draw_scene';
 import { boxOf, onLevel, placed } from './placement';
 import type { ThermoformSession } from './thermoform_session';
 import { dragging } from './views';
@@ -26,7 +25,7 @@ export class ModelMover {
   /** Whether a press at this point of the scene takes hold of the model. */
   holds(z_mm: number): boolean {
     const { original } = this.#session.model;
-    const placement = placementNow(this.#session);
+    const placement = this.#session.placement.value;
     if (original.value === null || placement === null) return false;
     const { high } = boxOf(placed(original.value.mesh.positions, placement));
     return z_mm > foot * high[2];

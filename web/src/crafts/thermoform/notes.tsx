@@ -1,35 +1,44 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Notes at the foot of the viewport: what keeps the work from going on first, then a list.
+import type { JsonObject } from '../../jobs/contract';
 import { Button, formatNumber, Icon, Note, useLasting, withUnit } from '../../ui';
 import { narrow } from '../../shared/panels/narrow';
 import { NoteList } from '../../shared/panels/note_list';
 import type { ReportNote } from '../../shared/session/report_notes';
 import { notesOf } from '../../shared/session/report_notes';
 import { problemNote, repairsNote } from '../../shared/panels/room_notes';
-import { clampOf, placementNow } from './draw_scene';
-import { beyondOpening, boxOf, placed, shareThatFits, sizeBeforeTurning_mm } from './placement';
+import { fitting, roomIn } from './fit';
+import { boxOf, clearance_mm, margin_mm, placed } from './placement';
 import type { ThermoformSession } from './thermoform_session';
 import { view } from './views';
 
-/** How far the model reaches beyond the clamp, mm; 0 inside. */
-function overhang_mm(session: ThermoformSession): number {
+/** How far the model is from the clamp, mm; negative where it reaches beyond. */
+function clearanceOf(session: ThermoformSession): number {
   const original = session.model.original.value;
-  const shown = session.shown.value;
-  const placement = placementNow(session);
-  if (original === null || shown === null || placement === null) return 0;
-  return beyondOpening(boxOf(placed(original.mesh.positions, placement)), clampOf(session, shown).opening_mm);
+  const placement = session.placement.value;
+  if (original === null || placement === null) return Infinity;
+  return clearance_mm(boxOf(placed(original.mesh.positions, placement)), roomIn(session.inForce.value));
 }
 
-/** Moves the model to the middle and, where that is not enough, makes it as large as the opening allows. */
-function makeFit(session: ThermoformSession): void {
+/** What makes the model fit; null while it is not known. */
+function fitOf(session: ThermoformSession): JsonObject | null {
   const original = session.model.original.value;
-  const shown = session.shown.value;
-  const placement = placementNow(session);
-  if (original === null || shown === null || placement === null) return;
-  const { low, high } = boxOf(placed(original.mesh.positions, placement));
-  const share = shareThatFits({ low, high }, clampOf(session, shown).opening_mm);
-  const size_mm = Math.floor(share * sizeBeforeTurning_mm(placement, boxOf(original.mesh.positions)));
-  session.setParameters({ x_mm: 0, y_mm: 0, ...(share < 1 ? { size_mm } : {}) }, 'Make the model fit');
+  return original && fitting(session.inForce.value, original.mesh.positions);
+}
+
+const makeItFit = 'Make it fit';
+
+/** A model that touches the clamp's edge, or all but touches it. */
+function closeness(session: ThermoformSession, clear_mm: number): ReportNote[] {
+  if (clear_mm > margin_mm - 0.05) return [];
+  const parameters = fitOf(session);
+  const distance = withUnit(formatNumber(Math.max(0, clear_mm), 2), 'mm');
+  return [
+    {
+      sentence: `The model comes within ${distance} of the clamp: leave ${withUnit(String(margin_mm), 'mm')}, so that the sheet can be drawn down beside it.`,
+      fix: parameters && { label: makeItFit, parameters },
+    },
+  ];
 }
 
 /** What the reports say that a maker should know before heating a sheet. */
@@ -56,17 +65,20 @@ export function Notes({ session, onChooseFile }: NotesProps) {
   const problem = problemNote(session, onChooseFile);
   if (problem) return problem;
   if (model === null) return null;
-  const over = overhang_mm(session);
-  if (over > 0.05)
+  const clear_mm = clearanceOf(session);
+  if (clear_mm < -0.05)
     return (
       <div class="note-place">
         <Note
           kind="attention"
           icon="warn"
-          title={`The model reaches ${withUnit(formatNumber(over, 2), 'mm')} beyond the clamp`}
+          title={`The model reaches ${withUnit(formatNumber(-clear_mm, 2), 'mm')} beyond the clamp`}
           actions={
-            <Button size="small" onClick={() => makeFit(session)}>
-              Make it fit
+            <Button
+              size="small"
+              onClick={() => session.setParameters(fitOf(session) ?? {}, 'Make the model fit')}
+            >
+              {makeItFit}
             </Button>
           }
         >
@@ -84,7 +96,7 @@ export function Notes({ session, onChooseFile }: NotesProps) {
   if (repairs) return repairs;
   return (
     <NoteList
-      notes={advice(session)}
+      notes={[...closeness(session, clear_mm), ...advice(session)]}
       title="Before you heat a sheet"
       urgent
       onFix={({ fix }) => fix && session.setParameters(fix.parameters, fix.label)}

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { describe, expect, it } from 'vitest';
-import { beyondOpening, boxOf, carriedOn, onLevel, placed, placementOf, rotationOf } from './placement';
+import { boxOf, carriedOn, clearance_mm, onLevel, placed, placementOf, rotationOf } from './placement';
 
 /** A box of 4 x 2 x 1 about the origin, y up, and where the core puts it: z up on the plate, not scaled. */
 const box = Float32Array.from(
@@ -51,16 +51,43 @@ describe('where the model stands', () => {
     close(carriedOn(there, turn, parameters, box), standing);
   });
 
-  it('leaves to the core what only the core knows', () => {
-    expect(carriedOn(standing, parameters, { ...parameters, up: [0, 0, 1] }, box)).toBeNull();
-    expect(carriedOn(standing, parameters, { ...parameters, size_mm: null }, box)).toBeNull();
+  it('is put another way up, and by the automatic size', () => {
+    const lying = carriedOn(standing, parameters, { ...parameters, up: [0, 0, 1] }, box) ?? [];
+    const { low, high } = boxOf(placed(box, lying));
+    close([...low, ...high], [-2, -1, 0, 2, 1, 1]);
+    const opening = { clamp_opening_x_mm: 200, clamp_opening_y_mm: 150 };
+    const sized = carriedOn(
+      standing,
+      { ...parameters, ...opening },
+      { ...parameters, ...opening, size_mm: null },
+      box,
+    );
+    const large = boxOf(placed(box, sized ?? []));
+    close([...large.low, ...large.high], [-50, -12.5, 0, 50, 12.5, 50]);
   });
 
-  it('says how far it reaches beyond the clamp', () => {
+  it('stays displaced as the core has displaced it', () => {
+    // Turned by 2 degrees, 1 % larger, and 3 mm to the right: as a machine profile says.
+    const [c, s] = [1.01 * Math.cos(Math.PI / 90), 1.01 * Math.sin(Math.PI / 90)];
+    const displaced = [c, 0, s, 3, s, 0, -c, 0, 0, 1.01, 0, 1.01, 0, 0, 0, 1];
+    close(carriedOn(displaced, parameters, { ...parameters, up: [0, 0, 1] }, box), [
+      ...[c, -s, 0, 3],
+      ...[s, c, 0, 0],
+      ...[0, 0, 1.01, 0.505],
+      ...[0, 0, 0, 1],
+    ]);
+  });
+
+  it('leaves to the core what it refuses', () => {
+    expect(carriedOn(standing, parameters, { ...parameters, up: [0, 0, 0] }, box)).toBeNull();
+  });
+
+  it('says how far it is from the clamp, and how far it reaches beyond', () => {
     const at = (x: number) => ({ low: [x - 2, -1, 0] as const, high: [x + 2, 1, 3] as const });
-    expect(beyondOpening(at(0), [20, 20])).toBe(0);
-    expect(beyondOpening(at(9), [20, 20])).toBe(1);
-    expect(beyondOpening(at(-11), [20, 20])).toBe(3);
+    expect(clearance_mm(at(0), [20, 20])).toBe(8);
+    expect(clearance_mm(at(0), [20, 6])).toBe(2);
+    expect(clearance_mm(at(9), [20, 20])).toBe(-1);
+    expect(clearance_mm(at(-11), [20, 20])).toBe(-3);
   });
 
   it('finds the platform under the pointer', () => {

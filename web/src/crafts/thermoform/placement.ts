@@ -2,6 +2,8 @@
 // How the model stands in the machine (millimetres, z up, origin in the centre of the clamp's opening). The
 // core decides; while a parameter is dragged, what it said last is carried on to the new values here.
 import type { JsonObject, Report } from '../../jobs/contract';
+import type { Placed } from './stand/place_model';
+import { placeModel } from './stand/place_model';
 
 /** 4 x 4, row by row: from the model's coordinates to the machine's. */
 export type Placement = readonly number[];
@@ -49,60 +51,60 @@ export function boxOf(positions: ArrayLike<number>): Box {
   return { low, high };
 }
 
-/** The longest side of a model that was not turned yet, as the parameter `size_mm` counts it. `box`: in the model's coordinates. */
-export function sizeBeforeTurning_mm(m: Placement, { low, high }: Box): number {
-  const scale = Math.hypot(m[0] ?? 0, m[1] ?? 0, m[2] ?? 0);
-  return scale * Math.max(high[0] - low[0], high[1] - low[1], high[2] - low[2]);
-}
+/** Between the model and the clamp's edge. */
+export const margin_mm = 5;
 
-/** By how much a model must shrink to stand in the middle of the opening with 5 mm around it; 1: not at all. */
+/** By how much a model must shrink to stand in the middle of the opening with a margin around it; 1: not at all. */
 export function shareThatFits({ low, high }: Box, opening_mm: readonly [number, number]): number {
-  const margin_mm = 5;
   const fits = (axis: 0 | 1) => (opening_mm[axis] - 2 * margin_mm) / (high[axis] - low[axis]);
   return Math.min(1, fits(0), fits(1));
 }
 
 const number = (values: JsonObject, name: string): number => Number(values[name] ?? 0);
 
-/** Where the core will put the model with the parameters `to`, given where it stood with `from`; null where
- *  that takes the core itself (another up, an automatic size). Shifts, sink, turn and sizes are exact. */
+/** All that decides how a model is turned and how large it is. */
+const turnAndSize = ['up', 'turn_deg', 'size_mm', 'clamp_opening_x_mm', 'clamp_opening_y_mm'];
+
+/** Where the core will put the model with the parameters `to`, given where it stood with `from`, defaults included;
+ *  null where the core refuses. */
 export function carriedOn(
   m: Placement,
   from: JsonObject,
   to: JsonObject,
   positions: ArrayLike<number>,
 ): Placement | null {
-  if (JSON.stringify(from['up']) !== JSON.stringify(to['up'])) return null;
-  const [size, wanted] = [from['size_mm'] ?? null, to['size_mm'] ?? null];
-  if (size !== wanted && (typeof size !== 'number' || typeof wanted !== 'number')) return null;
-  const factor = typeof size === 'number' && typeof wanted === 'number' ? wanted / size : 1;
-  const turn = ((number(to, 'turn_deg') - number(from, 'turn_deg')) * Math.PI) / 180;
-  const moved = [...m];
-  if (factor === 1 && turn === 0) {
+  if (turnAndSize.every((name) => JSON.stringify(from[name]) === JSON.stringify(to[name]))) {
+    const moved = [...m];
     moved[3] = (m[3] ?? 0) + number(to, 'x_mm') - number(from, 'x_mm');
     moved[7] = (m[7] ?? 0) + number(to, 'y_mm') - number(from, 'y_mm');
     moved[11] = (m[11] ?? 0) - number(to, 'sink_mm') + number(from, 'sink_mm');
     return moved;
   }
-  const [c, s] = [factor * Math.cos(turn), factor * Math.sin(turn)];
-  for (let j = 0; j < 3; ++j) {
-    const [x, y, z] = [m[j] ?? 0, m[4 + j] ?? 0, m[8 + j] ?? 0];
-    [moved[j], moved[4 + j], moved[8 + j]] = [c * x - s * y, s * x + c * y, factor * z];
-  }
-  moved[3] = moved[7] = moved[11] = 0;
-  const { low, high } = boxOf(placed(positions, moved));
-  moved[3] = number(to, 'x_mm') - (low[0] + high[0]) / 2;
-  moved[7] = number(to, 'y_mm') - (low[1] + high[1]) / 2;
-  moved[11] = -low[2] - number(to, 'sink_mm');
-  return moved;
+  const [before, after] = [placeModel(from, positions), placeModel(to, positions)];
+  return before && after && displacedAlike(m, before, after);
 }
 
-/** How far a model reaches beyond the clamp's opening, mm; 0 inside. */
-export function beyondOpening(box: Box, opening_mm: readonly [number, number]): number {
-  const over = ([0, 1] as const).map((axis) =>
-    Math.max(box.high[axis] - opening_mm[axis] / 2, -opening_mm[axis] / 2 - box.low[axis]),
-  );
-  return Math.max(0, ...over);
+/** `after`, displaced as the core displaced `before` to `m`: a profile says how this machine misplaces models. */
+function displacedAlike(m: Placement, before: Placed, after: Placed): Placement {
+  const out = [...after.matrix];
+  const at = (matrix: readonly number[], i: number, j: number): number => matrix[4 * i + j] ?? 0;
+  for (let i = 0; i < 3; ++i) {
+    // A row of m's turn and scale, times the inverse of before's.
+    const displacement = [0, 1, 2].map(
+      (j) => [0, 1, 2].reduce((sum, k) => sum + at(m, i, k) * at(before.matrix, j, k), 0) / before.scale ** 2,
+    );
+    const through = (matrix: readonly number[], j: number): number =>
+      displacement.reduce((sum, value, k) => sum + value * at(matrix, k, j), 0);
+    for (let j = 0; j < 4; ++j) out[4 * i + j] = through(after.matrix, j);
+    out[4 * i + 3] = (out[4 * i + 3] ?? 0) + at(m, i, 3) - through(before.matrix, 3);
+  }
+  return out;
+}
+
+/** The least distance of a model from the edge of the clamp's opening, mm; negative where it reaches beyond. */
+export function clearance_mm({ low, high }: Box, opening_mm: readonly [number, number]): number {
+  const to = (axis: 0 | 1) => opening_mm[axis] / 2 - Math.max(high[axis], -low[axis]);
+  return Math.min(to(0), to(1));
 }
 
 export interface Ray {

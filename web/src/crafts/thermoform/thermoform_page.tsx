@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { useSignal } from '@preact/signals';
-import { useEffect } from 'preact/hooks';
+import { useEffect, useMemo } from 'preact/hooks';
 import { Sheet } from '../../ui';
 import type { Viewport } from '../../view';
 import { solveInFull } from '../../shared/session/full_solve';
@@ -14,6 +14,8 @@ import { Inspector } from './inspector';
 import { Notes } from './notes';
 import { ResultsStrip } from './results_strip';
 import './thermoform.css';
+import { FaceTool } from './stand/face_tool';
+import './stand/stand.css';
 import type { ThermoformSession } from './thermoform_session';
 import { togglePlay } from './timeline';
 import { ViewportPanel } from './viewport_panel';
@@ -28,7 +30,7 @@ const look: Look = { direction: [0.14, 0.95, -0.98], up: [0, 0, 1] };
 
 export function ThermoformPage({ session, onChooseFile }: ThermoformPageProps) {
   const viewport = useSignal<Viewport | null>(null);
-  const picture = useModelPicture(session, viewport, look);
+  const picture = useModelPicture(session, viewport, look, session.placement);
   useResultPictures(session, viewport, session.shown, () => look);
   useRoomKeys(session, () => ({
     solve: () => void solveInFull(session),
@@ -40,6 +42,8 @@ export function ThermoformPage({ session, onChooseFile }: ThermoformPageProps) {
       s: () => (swiping.value = !swiping.value),
     },
   }));
+  const tool = useMemo(() => new FaceTool(session), [session]);
+  useEffect(() => tool.watch(), [tool]);
   useEffect(() => () => void (playing.value = false), []);
   const { model } = session.document.value;
   const opening = session.activity.value.kind === 'opening';
@@ -49,6 +53,7 @@ export function ThermoformPage({ session, onChooseFile }: ThermoformPageProps) {
         <h1 class="hidden-text">Thermoform</h1>
         <ViewportPanel
           session={session}
+          tool={tool}
           onViewport={(made) => (viewport.value = made)}
           notes={<Notes session={session} onChooseFile={onChooseFile} />}
         >
@@ -66,6 +71,7 @@ export function ThermoformPage({ session, onChooseFile }: ThermoformPageProps) {
         <Sheet label="Parameters">
           <Inspector
             session={session}
+            tool={tool}
             picture={picture.value}
             onReplace={onChooseFile}
             onForm={() => void solveInFull(session)}

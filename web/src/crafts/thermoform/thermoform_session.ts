@@ -21,6 +21,7 @@ import { figure } from '../../shared/session/report';
 import { RoomSession } from '../../shared/session/room_session';
 import type { Services } from '../../shared/session/services';
 import { endOf, momentAt, phaseAt, phasesOf } from './film';
+import { carriedOn, placementOf } from './placement';
 import { formedSheet, moulding, offered, printing, simulate, thermoform } from './thermoform_document';
 import type { ThermoformDocument } from './thermoform_document';
 
@@ -64,6 +65,8 @@ export class ThermoformSession extends RoomSession<ThermoformDocument> {
   readonly hasWork = this.model.isThere;
   readonly subject = this.model.subject;
   readonly asked = computed(() => known(this.operationNamed(simulate), this.document.value.parameters));
+  /** What forming depends on, with defaults filled in. */
+  readonly inForce = computed(() => this.filled(this.asked.value));
   readonly result = this.unlessLost(
     computed(() => formedSheet(this.document.value, this.subject.value, this.asked.value)),
   );
@@ -97,6 +100,15 @@ export class ThermoformSession extends RoomSession<ThermoformDocument> {
       relax: figure(report, 'relaxation_end_s'),
       raise: figure(report, 'raise_end_s'),
     });
+  });
+  /** Where the model stands with the parameters in force. */
+  readonly placement = computed(() => {
+    const shown = this.shown.value;
+    const original = this.model.original.value;
+    const reported = shown && placementOf(shown.report);
+    if (shown === null || original === null || reported === null) return null;
+    const from = this.filled(shown.parameters);
+    return carriedOn(reported, from, this.inForce.value, original.mesh.positions) ?? reported;
   });
   readonly #previewed = signal<Measured | null>(null);
 

@@ -9,11 +9,16 @@ import { Viewport } from '../../view';
 import { Legend } from '../../shared/panels/legend';
 import { narrow } from '../../shared/panels/narrow';
 import { figure } from '../../shared/session/report';
-import { keepDrawn, placementNow, thicknessOf } from './draw_scene';
+import { keepDrawn, thicknessOf } from './draw_scene';
 import { watchExtras } from './extras';
 import { MoveHandle } from './move_handle';
 import { ModelMover } from './move_model';
-import { boxOf, placed } from './placement';
+import { FaceList } from './stand/face_list';
+import { FaceOverlay } from './stand/face_overlay';
+import type { FaceTool } from './stand/face_tool';
+import type { TurnHandlesProps } from './stand/turn_handles';
+import { keepRingDrawn, placeTurnHandles, TurnHandles } from './stand/turn_handles';
+import { ModelTurner } from './stand/turn_model';
 import type { ThermoformSession } from './thermoform_session';
 import { Timeline } from './timeline';
 import { dragging, mappingOf, offeredViews, swiping, view } from './views';
@@ -30,6 +35,7 @@ const viewpoint: Viewpoint = {
 
 export interface ViewportPanelProps {
   readonly session: ThermoformSession;
+  readonly tool: FaceTool;
   /** Given the viewport once it exists, null when it goes. */
   readonly onViewport: (viewport: Viewport | null) => void;
   /** At the foot, off the object. */
@@ -37,12 +43,15 @@ export interface ViewportPanelProps {
   readonly children?: ComponentChildren;
 }
 
-export function ViewportPanel({ session, onViewport, notes, children }: ViewportPanelProps) {
+export function ViewportPanel({ session, tool, onViewport, notes, children }: ViewportPanelProps) {
   const container = useRef<HTMLDivElement>(null);
   const foot = useRef<HTMLDivElement>(null);
+  const list = useRef<HTMLDivElement>(null);
   const handle = useRef<HTMLButtonElement>(null);
   const viewport = useRef<Viewport | null>(null);
   const mover = useMemo(() => new ModelMover(session), [session]);
+  const turner = useMemo(() => new ModelTurner(session), [session]);
+  const turnHandles = useMemo((): TurnHandlesProps['elements'] => ({}), []);
   const watched = useMemo(() => watchExtras(session), [session]);
   const drawing = useSignal(true);
 
@@ -61,6 +70,7 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
       uprightTurn: true,
       dimensions: false,
       onPointer: ({ kind, hit, button, shiftKey, capture }) => {
+        if (tool.sides.peek() !== null) return; // a press turns the view or takes a face
         if (kind === 'move' && !mover.holding)
           made.canvas.style.cursor = hit && mover.holds(hit.positionMm[2]) ? 'move' : '';
         if (kind === 'down' && hit && button === 0 && !shiftKey && mover.holds(hit.positionMm[2])) {
@@ -73,18 +83,33 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
           mover.end();
         }
       },
-      onFrame: () => placeHandle(made, session, handle.current),
+      onFrame: () => {
+        const there = canBeMoved(session) && tool.sides.peek() === null;
+        placeHandle(made, turner, handle.current, there);
+        placeTurnHandles(made, turner, turnHandles, there);
+        faces.place();
+      },
       onStatus: ({ state }) => (drawing.value = state === 'ready'),
     });
     made.setViewpoint(viewpoint);
     made.lookFromViewpoint(false);
     viewport.current = made;
+    const faces = new FaceOverlay(session, tool, made);
     // While the model is in hand the picture stays as it is, whatever notes come and go.
     const makeRoom = () => {
-      if (!dragging.peek()) made.setFreeRectangle(freeRectangle(foot.current));
+      const besides = tool.sides.value === null ? null : list.current;
+      if (!dragging.peek()) made.setFreeRectangle(freeRectangle(foot.current, besides));
     };
     const stop = [
-      keepDrawn(made, session, () => watched.extras.value),
+      keepDrawn(
+        made,
+        session,
+        () => watched.extras.value,
+        () => tool.sides.value !== null,
+      ),
+      keepRingDrawn(made, turner),
+      effect(() => faces.mark()),
+      () => faces.dispose(),
       effect(() => {
         if (!dragging.value) makeRoom();
       }),
@@ -106,11 +131,12 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
   useEffect(() => () => watched.dispose(), [watched]);
 
   const shown = session.shown.value;
+  const choosing = tool.sides.value !== null;
   const visible = drawing.value && session.model.original.value !== null;
   return (
     <div class="viewport-panel">
       <div ref={container} class="viewport" />
-      {visible && shown ? (
+      {visible && shown && !choosing ? (
         <div class="float top-left row">
           <Segmented
             floating
@@ -130,17 +156,28 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
           </span>
         </div>
       ) : null}
-      {visible ? <SidePanel session={session} url={watched.extras.value.printed?.url ?? null} /> : null}
+      <div ref={list}>
+        <FaceList session={session} tool={tool} />
+      </div>
+      {visible && !choosing ? (
+        <SidePanel session={session} url={watched.extras.value.printed?.url ?? null} />
+      ) : null}
       <div ref={foot} class="float bottom-left foot wide">
         {session.previews.running.value && session.model.original.value && shown === null ? (
           <p class="label-chip">
             <Icon name="clock" small /> Making the first preview
           </p>
         ) : null}
-        {notes}
-        {visible && view.value !== 'undercut' ? <Timeline session={session} /> : null}
+        {choosing ? null : notes}
+        {visible && !choosing && view.value !== 'undercut' ? <Timeline session={session} /> : null}
       </div>
       <MoveHandle session={session} mover={mover} viewport={() => viewport.current} element={handle} />
+      <TurnHandles
+        session={session}
+        turner={turner}
+        viewport={() => viewport.current}
+        elements={turnHandles}
+      />
       {children}
     </div>
   );
@@ -170,33 +207,30 @@ function SidePanel({ session, url }: { session: ThermoformSession; url: string |
   ) : null;
 }
 
+/** While the platform is up and the model on it. */
+function canBeMoved(session: ThermoformSession): boolean {
+  return session.moment.peek()?.platform_z_mm === 0;
+}
+
 /** In front of the model's foot, where there is one to move. */
-function placeHandle(viewport: Viewport, session: ThermoformSession, element: HTMLElement | null): void {
+function placeHandle(
+  viewport: Viewport,
+  turner: ModelTurner,
+  element: HTMLElement | null,
+  there: boolean,
+): void {
   if (element === null) return;
-  const original = session.model.original.peek();
-  const placement = original && placementNow(session);
-  const moment = session.moment.peek();
-  if (!original || !placement || moment === null || moment.platform_z_mm !== 0) {
-    element.hidden = true;
-    return;
-  }
-  const { low, high } = boxOf(placed(outline(original.mesh.positions), placement));
-  const at = viewport.project([(low[0] + high[0]) / 2, low[1] - 14, 2]);
-  element.hidden = at === null;
+  const box = there ? turner.box.peek() : null;
+  const at = box && viewport.project([(box.low[0] + box.high[0]) / 2, box.low[1] - 14, 2]);
+  element.hidden = !at || turner.holding;
   if (at) element.style.translate = `${at.xPx.toFixed(1)}px ${at.yPx.toFixed(1)}px`;
 }
 
-/** Every so many vertices: the handle need not know the model to the last corner. */
-function outline(positions: Float32Array): Float32Array {
-  const stride = Math.max(1, Math.floor(positions.length / 3 / 2000));
-  const out = new Float32Array(3 * Math.ceil(positions.length / 3 / stride));
-  for (let i = 0, j = 0; j < out.length; i += 3 * stride, j += 3) out.set(positions.subarray(i, i + 3), j);
-  return out;
-}
-
-/** What floats stays off the object. */
-function freeRectangle(foot: Element | null): Insets {
-  const height = foot?.getBoundingClientRect().height ?? 0;
+/** What floats stays off the object: at the foot, and the list of faces at the right or, on a phone, at the foot. */
+function freeRectangle(foot: Element | null, list: Element | null = null): Insets {
+  const floating = list?.firstElementChild?.getBoundingClientRect();
+  const height = Math.max(foot?.getBoundingClientRect().height ?? 0, narrow() ? (floating?.height ?? 0) : 0);
   const bottom = height > 0 ? height + 20 : 24;
-  return narrow() ? { left: 10, top: 64, right: 10, bottom } : { left: 24, top: 88, right: 24, bottom };
+  if (narrow()) return { left: 10, top: floating ? 10 : 64, right: 10, bottom };
+  return { left: 24, top: 88, right: floating ? floating.width + 36 : 24, bottom };
 }

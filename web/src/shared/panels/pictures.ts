@@ -18,11 +18,12 @@ async function pictureOf(view: Viewport, part: 'original' | 'relief', look: Look
   return await view.pictureOf(part, look, pictureSize.width, pictureSize.height);
 }
 
-/** The model's picture as an address: the gallery's for a sample. */
+/** The model's picture as an address: the gallery's for a sample. `inViewport`: null until the viewport has the model. */
 export function useModelPicture<D extends CraftDocument>(
   session: ModelRoom<D>,
   viewport: Signal<Viewport | null>,
   look: Look,
+  inViewport?: ReadonlySignal<unknown>,
 ) {
   const url = useSignal<string | null>(null);
   useEffect(() => {
@@ -36,6 +37,7 @@ export function useModelPicture<D extends CraftDocument>(
       const source = session.document.value.model?.source;
       const view = viewport.value;
       if (from === undefined || source === undefined || view === null || drawn === from) return;
+      if (source.kind === 'file' && inViewport?.value === null) return;
       drawn = from;
       if (source.kind === 'sample') show(`pictures/${source.sample}.webp`);
       else

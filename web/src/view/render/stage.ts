@@ -109,8 +109,8 @@ export class Stage {
     this.stageParts.setFixtures(fixtures);
   }
 
-  moveFixture(id: string, positions: Float32Array | Float64Array): void {
-    this.stageParts.moveFixture(id, positions);
+  moveFixture(id: string, positions: Float32Array | Float64Array, turned: boolean): void {
+    this.stageParts.moveFixture(id, positions, turned);
   }
 
   setOpacity(name: PartName, opacity: number): void {

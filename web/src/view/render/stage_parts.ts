@@ -98,14 +98,14 @@ export class StageParts {
     this.fixtures = fixtures;
   }
 
-  moveFixture(id: string, positions: Float32Array | Float64Array): void {
+  moveFixture(id: string, positions: Float32Array | Float64Array, turned: boolean): void {
     this.fixtures = this.fixtures.map((old) =>
       old.id === id ? { ...old, mesh: { ...old.mesh, positions } } : old,
     );
     for (const part of Object.values(this.parts)) {
       const found = part.fixtures.find((fixture) => fixture.id === id);
       if (!found) continue;
-      found.surface.updatePositions(positions, true);
+      found.surface.updatePositions(positions, !turned);
       part.subject.changed();
     }
     this.picture.shapeChanged();

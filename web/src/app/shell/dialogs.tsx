@@ -8,6 +8,7 @@ const keys: readonly (readonly [keys: readonly string[], meaning: string])[] = [
   [['F'], 'Fit the model into the picture'],
   [['S'], 'Swipe between model and result'],
   [['Space'], 'Play the animation of forming'],
+  [['P'], 'Find a setting'],
   [['Ctrl', 'Enter'], 'Solve at full detail'],
   [['Ctrl', 'E'], 'Export'],
   [['Ctrl', 'O'], 'Open a file'],

@@ -3,7 +3,7 @@
 import { IconButton } from '../../ui';
 import { machineProfile } from '../../shared/session/machine_profile';
 import { ModelRow } from '../../shared/panels/model_row';
-import { ParameterPanel } from '../../shared/panels/parameter_panel';
+import { ParameterPanel } from '../../shared/panels/parameters/parameter_panel';
 import { placementNow } from './draw_scene';
 import { MainButton } from './export_button';
 import { boxOf, sizeBeforeTurning_mm } from './placement';

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Model, parts, parameters, lengths and errors, and the one filled button.
 import { ModelRow } from '../../shared/panels/model_row';
-import { ParameterPanel } from '../../shared/panels/parameter_panel';
+import { ParameterPanel } from '../../shared/panels/parameters/parameter_panel';
 import { figure, vectorOf } from '../../shared/session/report';
 import { MainButton } from './export_button';
 import { Figures } from './figures';

@@ -1,95 +1,30 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The controls of an operation, made from its declaration in the catalog.
-import type { ComponentChildren } from 'preact';
-import { useId, useState } from 'preact/hooks';
-import type { Json, JsonObject, Operation, ParameterSchema } from '../../jobs/contract';
-import { Icon, Parameter, Segmented, Switch, tipHandlers } from '../../ui';
+// The control of one parameter, made from its declaration in the catalog.
+import { useId } from 'preact/hooks';
+import type { Json, JsonObject } from '../../../jobs/contract';
+import { Parameter, Segmented, Switch, tipHandlers } from '../../../ui';
+import type { Entry } from './find_parameters';
+import { defaultOf } from './find_parameters';
 import { VectorField } from './vector_field';
 
-export interface ParameterPanelProps {
-  readonly operation: Operation;
+export interface ParameterValues {
   /** Only what differs from the defaults. */
   readonly parameters: JsonObject;
   /** Sentences from the backend by parameter name. */
   readonly errors: Readonly<Record<string, string>>;
   readonly onPreview: (name: string, value: Json) => void;
   readonly onCommit: () => void;
-  /** Put in front of a group's parameters. */
-  readonly groupHead?: Readonly<Record<string, ComponentChildren>>;
   /** What automatic values came to. */
   readonly automatic?: Readonly<Record<string, number>>;
-  /** Groups that stand open; left out: all. The others are folded, as the advanced parameters are. */
-  readonly openGroups?: readonly string[];
 }
 
-type Entry = readonly [name: string, schema: ParameterSchema];
+type ControlProps = ParameterValues & { readonly entry: Entry };
 
-export function ParameterPanel(props: ParameterPanelProps) {
-  const entries = Object.entries(props.operation.parameters.properties);
-  const plain = entries.filter(([, schema]) => !schema['x-advanced']);
-  const advanced = entries.filter(([, schema]) => schema['x-advanced']);
-  const groups = new Map<string, Entry[]>(Object.keys(props.groupHead ?? {}).map((title) => [title, []]));
-  for (const entry of plain) {
-    const title = entry[1]['x-group'] ?? '';
-    groups.set(title, [...(groups.get(title) ?? []), entry]);
-  }
-  const isOpen = ([title]: readonly [string, unknown]) => props.openGroups?.includes(title) ?? true;
-  const folded: [string, Entry[]][] = [
-    ...[...groups].filter((group) => !isOpen(group)),
-    ['Advanced', advanced],
-  ];
-  return (
-    <>
-      {[...groups].filter(isOpen).map(([title, members]) => (
-        <section key={title} class="section" aria-label={title || 'Parameters'}>
-          {title ? <h3>{title}</h3> : null}
-          {props.groupHead?.[title]}
-          {members.map((entry) => (
-            <Control key={entry[0]} entry={entry} {...props} />
-          ))}
-        </section>
-      ))}
-      {folded.map(([title, members]) =>
-        members.length > 0 ? <Folded key={title} title={title} members={members} panel={props} /> : null,
-      )}
-    </>
-  );
-}
-
-interface FoldedProps {
-  readonly title: string;
-  readonly members: readonly Entry[];
-  readonly panel: ParameterPanelProps;
-}
-
-/** Opens by itself where one of its values is wrong. */
-function Folded({ title, members, panel }: FoldedProps) {
-  const [chosen, setOpen] = useState(false);
-  const id = useId();
-  const open = chosen || members.some(([name]) => panel.errors[name] !== undefined);
-  return (
-    <>
-      <button
-        type="button"
-        class="fold"
-        aria-expanded={open}
-        aria-controls={id}
-        onClick={() => setOpen(!open)}
-      >
-        <Icon name={open ? 'chevronDown' : 'chevronRight'} small />
-        {title}
-        <span>{members.length}</span>
-      </button>
-      <section id={id} class="section" hidden={!open} aria-label={title}>
-        {open ? members.map((entry) => <Control key={entry[0]} entry={entry} {...panel} />) : null}
-      </section>
-    </>
-  );
-}
-
-function Control({ entry: [name, schema], ...props }: ParameterPanelProps & { entry: Entry }) {
+/** The control that fits the type of a parameter. */
+export function ParameterControl({ entry, ...props }: ControlProps) {
+  const [name, schema] = entry;
   const types = Array.isArray(schema.type) ? (schema.type as readonly string[]) : [schema.type as string];
-  const fallback = schema.default ?? null;
+  const fallback = defaultOf(entry);
   const value = props.parameters[name] ?? fallback;
   const label = schema.title ?? name;
   const help = schema.description;

@@ -23,6 +23,8 @@ export const iconPaths = {
   clock: '<circle cx="12" cy="12" r="8.5"/><path d="M12 7.5V12l3 2"/>',
   warn: '<path d="M12 4L2.8 20h18.400z"/><path d="M12 10v4.5M12 17.200v.1"/>',
   close: '<path d="M6 6l12 12M18 6L6 18"/>',
+  chevronLeft: '<path d="M15 6l-6 6 6 6"/>',
+  minus: '<path d="M5 12h14"/>',
   plus: '<path d="M12 5v14M5 12h14"/>',
   eye: '<path d="M2.5 12S6 5.5 12 5.5 21.5 12 21.5 12 18 18.5 12 18.5 2.5 12 2.5 12z"/><circle cx="12" cy="12" r="3"/>',
   lock: '<rect x="5" y="11" width="14" height="9.5" rx="2"/><path d="M8 11V8a4 4 0 0 1 8 0v3"/>',

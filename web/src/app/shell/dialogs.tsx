@@ -23,6 +23,13 @@ const viewKeys: typeof keys = [
   [['←', '→', '↑', '↓'], 'Turn the model'],
   [['+', '−'], 'Zoom'],
 ];
+const sheetKeys: typeof keys = [
+  [['+', '−'], 'Zoom'],
+  [['0'], 'Fit'],
+  [['←', '→', '↑', '↓'], 'Move'],
+  [['Page Up', 'Page Down'], 'Previous or next sheet'],
+  [['Home'], 'All sheets'],
+];
 const fieldKeys: typeof keys = [
   [['↑', '↓'], 'Change the value by 1 % of its range'],
   [['Shift', '↑'], 'Change the value by 10 % of its range'],
@@ -52,6 +59,8 @@ export function KeysDialog({ onClose }: { onClose: () => void }) {
         <div>
           <h3>In the 3D view</h3>
           <KeyList list={viewKeys} />
+          <h3>In the sheets to cut</h3>
+          <KeyList list={sheetKeys} />
           <h3>In a parameter</h3>
           <KeyList list={fieldKeys} />
         </div>

@@ -6,7 +6,7 @@ import { figure, vectorOf } from '../../shared/session/report';
 import { MainButton } from './export_button';
 import { Figures } from './figures';
 import { PartList } from './drawing/part_list';
-import type { SendToMachine } from './ribbon/send_sheet';
+import type { SendToMachine } from './sheets/send_sheet';
 import { flatView } from './views';
 import { design, planning } from './zippable_document';
 import type { ZippableSession } from './zippable_session';

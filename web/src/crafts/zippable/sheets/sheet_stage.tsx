@@ -98,7 +98,7 @@ export function SheetStage({ sheets, words, label, nameOf }: SheetStageProps) {
           </svg>
         ) : null}
       </div>
-      <div class="sheet-tools" role="toolbar" aria-label="Look at the sheets">
+      <div class="sheet-tools" role="group" aria-label="Look at the sheets">
         {sheets.length > 1 ? (
           <>
             <IconButton

@@ -8,6 +8,8 @@ import { App } from './app/app';
 import { createServices } from './app/create_services';
 import { placeOfWork } from './app/rooms';
 import { go, place, startRouting } from './app/route';
+import { openSampleLink } from './app/share/open_link';
+import { isSampleLink } from './app/share/sample_link';
 import { followSystemTheme } from './app/theme';
 import { resumePending } from './shared/session/full_solve';
 import type { Services } from './shared/session/services';
@@ -34,7 +36,12 @@ async function start(root: HTMLElement): Promise<void> {
   effect(() => resumePending(sessions.zippable));
   effect(() => resumePending(sessions.machines));
   effect(() => resumePending(sessions.evidence));
-  if (!startRouting(() => everythingSaved(services)) && !services.projects.isBlank.value)
+  const named = startRouting({
+    mayReload: () => everythingSaved(services),
+    isLink: isSampleLink,
+    openLink: (hash) => void openSampleLink(hash, services, sessions),
+  });
+  if (!named && !services.projects.isBlank.value)
     go(placeOfWork(services.projects.document.value) ?? 'relief');
   effect(() => {
     for (const [room, { active }] of Object.entries(sessions)) active.value = place.value === room;

@@ -19,7 +19,9 @@ it('follows the address; that of a worker started again is loaded, once all is s
   };
   // A token that is still there at the start was there when the page was loaded: loading it again would not end.
   history.replaceState(null, '', '#token=left');
-  expect(startRouting(mayReload)).toBe(false);
+  const openLink = vi.fn();
+  const isLink = (hash: string) => hash.startsWith('#/open');
+  expect(startRouting({ mayReload, isLink, openLink })).toBe(false);
   await goTo('#/relief');
   expect(place.value).toBe('relief');
   expect(mayReload).not.toHaveBeenCalled();
@@ -29,4 +31,11 @@ it('follows the address; that of a worker started again is loaded, once all is s
   saved = true;
   await goTo('#/relief&token=newer');
   expect(reload).toHaveBeenCalledTimes(1);
+  // A link is opened once and leaves the address; one that comes with a token waits for the load.
+  await goTo('#/open?v=1&relief=bust');
+  expect(openLink.mock.calls).toEqual([['#/open?v=1&relief=bust']]);
+  expect(location.hash).toBe('#/relief');
+  await goTo('#/open?v=1&relief=bust&token=newest');
+  expect(openLink).toHaveBeenCalledTimes(1);
+  expect(reload).toHaveBeenCalledTimes(2);
 });

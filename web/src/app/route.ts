@@ -17,10 +17,25 @@ export function go(next: Place): void {
   else location.hash = `#/${next}`;
 }
 
-/** Follows the address; returns false where it names no place. `mayReload` saves what a load would lose; false: it could not. */
-export function startRouting(mayReload: () => Promise<boolean>): boolean {
+export interface RouteActions {
+  /** Saves what a load would lose; false: it could not. */
+  readonly mayReload: () => Promise<boolean>;
+  /** Tells what is no place but something to open, once. */
+  readonly isLink: (hash: string) => boolean;
+  readonly openLink: (hash: string) => void;
+}
+
+/** Follows the address; returns false where it names no place and nothing to open. */
+export function startRouting({ mayReload, isLink, openLink }: RouteActions): boolean {
   const read = () => {
-    const found = placeOf(location.hash);
+    const { hash, pathname, search } = location;
+    if (isLink(hash)) {
+      // Out of the address, so that neither a reload nor the way back opens it once more.
+      history.replaceState(null, '', `${pathname}${search}#/${place.value}`);
+      openLink(hash);
+      return true;
+    }
+    const found = placeOf(hash);
     if (found) place.value = found;
     return found !== null;
   };

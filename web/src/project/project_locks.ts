@@ -21,11 +21,18 @@ export class ProjectLocks {
 
   /** Whether the project is this tab's now; waits a moment for another tab to let go of it. */
   async take(id: string): Promise<boolean> {
-    const asked = this.#asked.get(id) ?? this.#ask(id);
+    const asked = this.#asked.get(id) ?? this.#ask(id, this.#patience_ms);
     this.#asked.set(id, asked);
     if ((await asked) !== null) return true;
     this.#asked.delete(id);
     return false;
+  }
+
+  /** For a project that was made just now: no other tab has it, so that however slow the browser is, it is not refused. */
+  async takeNew(id: string): Promise<void> {
+    const asked = this.#ask(id, Infinity);
+    this.#asked.set(id, asked);
+    await asked;
   }
 
   release(id: string): void {
@@ -33,12 +40,12 @@ export class ProjectLocks {
     this.#asked.delete(id);
   }
 
-  async #ask(id: string): Promise<Release | null> {
+  async #ask(id: string, patience_ms: number): Promise<Release | null> {
     const locks = this.#locks;
     const free: Release = () => undefined;
     if (locks === undefined) return free;
     const abort = new AbortController();
-    const timer = setTimeout(() => abort.abort(), this.#patience_ms);
+    const timer = Number.isFinite(patience_ms) ? setTimeout(() => abort.abort(), patience_ms) : undefined;
     try {
       return await new Promise<Release>((resolve, reject) => {
         const held = () => new Promise<void>((release) => resolve(release));

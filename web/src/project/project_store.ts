@@ -66,7 +66,7 @@ export class ProjectStore {
     if (stored && !taken) this.#adopt(stored.document);
     else {
       if (id !== null && !taken) this.#locks.release(id);
-      await this.#locks.take(this.document.value.id);
+      void this.#locks.takeNew(this.document.value.id); // nobody else can have it: the page need not wait
     }
     return stored && taken
       ? `“${stored.document.name}” is open in another tab; here is a new project.`
@@ -96,7 +96,7 @@ export class ProjectStore {
   /** These four leave the open project. Where it cannot be saved they throw a sentence, and it stays open. */
   async create(name = 'New project'): Promise<void> {
     const document = newDocument(crypto.randomUUID(), name, now_s());
-    await this.#turnTo(document.id, () => document);
+    await this.#turnTo(document.id, () => document, true);
   }
   async open(id: string): Promise<void> {
     if (id === this.document.value.id) return;
@@ -109,10 +109,11 @@ export class ProjectStore {
   }
   async duplicate(): Promise<void> {
     const id = crypto.randomUUID();
-    await this.#turnTo(id, () => {
+    const copy = () => {
       const { document } = this.#history;
       return { ...document, id, name: `${document.name} copy` };
-    });
+    };
+    await this.#turnTo(id, copy, true);
     await this.#saveNew();
   }
   async importFile(bytes: Uint8Array<ArrayBuffer>): Promise<void> {
@@ -121,7 +122,7 @@ export class ProjectStore {
     await this.#readStored();
     const taken = this.#stored.has(document.id) || !(await this.#locks.take(document.id));
     const id = taken ? crypto.randomUUID() : document.id;
-    await this.#turnTo(id, () => ({ ...document, id }));
+    await this.#turnTo(id, () => ({ ...document, id }), taken);
     await this.#saveNew();
   }
   /** Possible whatever the open project's state: it is the way out of a full disk. */
@@ -129,7 +130,7 @@ export class ProjectStore {
     const gone = blobsOf(this.#stored.get(id)?.document);
     if (id === this.document.value.id) {
       const next = newDocument(crypto.randomUUID(), 'New project', now_s());
-      await this.#locks.take(next.id);
+      await this.#locks.takeNew(next.id);
       clearTimeout(this.#timer);
       this.#named(gone);
       this.#adopt(next); // first, so that nothing more is saved of what is being deleted
@@ -208,8 +209,12 @@ export class ProjectStore {
       `“${name}” is open in another tab. Continue there, or open another project in that tab first.`,
     );
   }
-  async #turnTo(id: string, next: () => ProjectDocument | Promise<ProjectDocument>): Promise<void> {
-    await this.#take(id);
+  async #turnTo(
+    id: string,
+    next: () => ProjectDocument | Promise<ProjectDocument>,
+    isNew = false,
+  ): Promise<void> {
+    await (isNew ? this.#locks.takeNew(id) : this.#take(id));
     try {
       const document = await next();
       await this.#saveFirst(); // nothing else is waited for before #adopt: nothing can change

@@ -211,3 +211,30 @@ describe('one project and two tabs', () => {
     }
   });
 });
+
+describe('a browser that is slow to give locks', () => {
+  class SlowLocks extends Locks {
+    delay_ms = 200; // tabs wait 50 ms for each other
+    override async request(name: string, options: { signal: AbortSignal }, held: () => Promise<void>) {
+      await new Promise((resolve) => setTimeout(resolve, this.delay_ms));
+      options.signal.throwIfAborted();
+      await super.request(name, options, held);
+    }
+  }
+
+  it('opens new projects, which no other tab can have, and then keeps them', async () => {
+    const locks = new SlowLocks();
+    const browser = new Browser(locks);
+    const { store } = await browser.tab();
+    await use(store, 'ball');
+    await store.create('Shared');
+    expect(store.document.value.name).toBe('Shared');
+    expect(store.projects.value).toHaveLength(1);
+    await use(store, 'torus');
+    await store.duplicate();
+    expect(store.document.value.name).toBe('Shared copy');
+    locks.delay_ms = 0;
+    const other = await browser.tab();
+    await expect(other.store.open(idOf(store))).rejects.toThrow(/open in another tab/);
+  });
+});

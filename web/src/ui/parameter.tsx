@@ -102,7 +102,15 @@ export function Parameter(props: ParameterProps) {
             {message}
           </span>
         ) : changed ? (
-          <button type="button" class="was" onClick={restore} aria-label={`Restore ${label} to ${fallback}`}>
+          <button
+            type="button"
+            class="was"
+            onClick={(event) => {
+              restore();
+              if (event.detail === 0) field.current?.focus(); // this button goes away: the keyboard goes on from the number
+            }}
+            aria-label={`Restore ${label} to ${fallback}`}
+          >
             {fallback === 'automatic' ? 'automatic' : `default ${fallback}`}
           </button>
         ) : null}

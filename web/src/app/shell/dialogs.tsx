@@ -8,6 +8,7 @@ const keys: readonly (readonly [keys: readonly string[], meaning: string])[] = [
   [['F'], 'Fit the model into the picture'],
   [['S'], 'Swipe between model and result'],
   [['Space'], 'Play the animation of forming'],
+  [['P'], 'Find a setting'],
   [['Ctrl', 'Enter'], 'Solve at full detail'],
   [['Ctrl', 'E'], 'Export'],
   [['Ctrl', 'O'], 'Open a file'],
@@ -21,6 +22,13 @@ const keys: readonly (readonly [keys: readonly string[], meaning: string])[] = [
 const viewKeys: typeof keys = [
   [['←', '→', '↑', '↓'], 'Turn the model'],
   [['+', '−'], 'Zoom'],
+];
+const sheetKeys: typeof keys = [
+  [['+', '−'], 'Zoom'],
+  [['0'], 'Fit'],
+  [['←', '→', '↑', '↓'], 'Move'],
+  [['Page Up', 'Page Down'], 'Previous or next sheet'],
+  [['Home'], 'All sheets'],
 ];
 const fieldKeys: typeof keys = [
   [['↑', '↓'], 'Change the value by 1 % of its range'],
@@ -51,6 +59,8 @@ export function KeysDialog({ onClose }: { onClose: () => void }) {
         <div>
           <h3>In the 3D view</h3>
           <KeyList list={viewKeys} />
+          <h3>In the sheets to cut</h3>
+          <KeyList list={sheetKeys} />
           <h3>In a parameter</h3>
           <KeyList list={fieldKeys} />
         </div>

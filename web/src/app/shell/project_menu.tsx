@@ -3,8 +3,11 @@ import { useState } from 'preact/hooks';
 import type { Services } from '../../shared/session/services';
 import { Button, Dialog, Icon, Menu } from '../../ui';
 import { saveAsFile } from '../project_file';
+import { copyLink, hintOf, LinkDialog } from '../share/copy_link';
+import type { ProjectLink } from '../share/project_link';
+import { linkTo } from '../share/project_link';
 import { placeOfWork } from '../rooms';
-import { go } from '../route';
+import { go, place } from '../route';
 import { toastFailure } from '../failure_toast';
 
 const listedProjects = 8;
@@ -13,6 +16,9 @@ export function ProjectMenu({ services, onOpenFile }: { services: Services; onOp
   const { projects } = services;
   const { id, name } = projects.document.value;
   const [dialog, setDialog] = useState<'rename' | 'delete' | null>(null);
+  const [shown, setShown] = useState<ProjectLink | null>(null);
+  const catalog = services.catalog.value;
+  const link = catalog && linkTo(projects.document.value, catalog, place.value);
   const blank = projects.isBlank.value ? 'Empty project' : undefined;
   const open = async (other: string) => {
     await projects.open(other);
@@ -36,6 +42,15 @@ export function ProjectMenu({ services, onOpenFile }: { services: Services; onOp
             icon: 'download',
             disabledReason: blank,
             onSelect: () => toastFailure(saveAsFile(projects)),
+          },
+          {
+            label: 'Copy a link',
+            icon: 'link',
+            hint: link ? hintOf(link) : undefined,
+            disabledReason: blank ?? (link ? undefined : 'The solver has not started'),
+            onSelect: () => {
+              if (link) void copyLink(link).then((copied) => copied || setShown(link));
+            },
           },
           null,
           { label: 'Rename', icon: 'pencil', disabledReason: blank, onSelect: () => setDialog('rename') },
@@ -64,6 +79,13 @@ export function ProjectMenu({ services, onOpenFile }: { services: Services; onOp
         <span class="clip">{name}</span>
         <Icon name="chevronDown" small />
       </Menu>
+      {shown ? (
+        <LinkDialog
+          link={shown}
+          onSaveAsFile={() => toastFailure(saveAsFile(projects))}
+          onClose={() => setShown(null)}
+        />
+      ) : null}
       {dialog === 'rename' ? (
         <Dialog title="Rename the project" onClose={() => setDialog(null)}>
           <form

@@ -4,7 +4,7 @@ import { useSignal } from '@preact/signals';
 import type { ComponentChildren } from 'preact';
 import { useId } from 'preact/hooks';
 import { Button, formatCount, formatNumber, Icon, Menu, Segmented, Switch } from '../../ui';
-import { ParameterPanel } from '../../shared/panels/parameter_panel';
+import { ParameterPanel } from '../../shared/panels/parameters/parameter_panel';
 import { Causes } from './causes';
 import type { MeasuredObject, Use } from './evidence_document';
 import { evidence } from './evidence_document';

@@ -8,7 +8,7 @@ import { Button, Dialog } from '../../ui';
 import { withoutDefaults } from '../../shared/session/craft_document';
 import { download } from '../../shared/session/download';
 import { bytesOf } from '../../shared/session/import_model';
-import { ParameterPanel } from '../../shared/panels/parameter_panel';
+import { ParameterPanel } from '../../shared/panels/parameters/parameter_panel';
 import { printOnPaper } from '../../shared/print/print_request';
 import { readyWorker } from '../../shared/session/services';
 import type { EvidenceSession } from './evidence_session';

@@ -3,7 +3,7 @@
 import type { Operation } from '../../jobs/contract';
 import { layersOf } from '../../machines/toolpath';
 import { formatNumber, withUnit } from '../../ui';
-import { ParameterPanel } from '../../shared/panels/parameter_panel';
+import { ParameterPanel } from '../../shared/panels/parameters/parameter_panel';
 import { MachinePanel, StartAndStop } from './panel/machine_panel';
 import type { MachinesSession } from './machines_session';
 import { MaterialSection } from './sections/material_section';

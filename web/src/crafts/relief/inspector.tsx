@@ -14,7 +14,7 @@ import {
   withUnit,
 } from '../../ui';
 import type { Viewport } from '../../view';
-import { ParameterPanel } from '../../shared/panels/parameter_panel';
+import { ParameterPanel } from '../../shared/panels/parameters/parameter_panel';
 import { readyWorker } from '../../shared/session/services';
 import type { CraftResult } from '../../shared/session/craft_document';
 import { download, safeFileName } from '../../shared/session/download';

@@ -3,7 +3,7 @@
 import { IconButton } from '../../ui';
 import { machineProfile } from '../../shared/session/machine_profile';
 import { ModelRow } from '../../shared/panels/model_row';
-import { ParameterPanel } from '../../shared/panels/parameter_panel';
+import { ParameterPanel } from '../../shared/panels/parameters/parameter_panel';
 import { MainButton } from './export_button';
 import type { FaceTool } from './stand/face_tool';
 import { placeModel } from './stand/place_model';

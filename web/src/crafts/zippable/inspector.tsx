@@ -2,12 +2,12 @@
 // Model, parts, parameters, lengths and errors, and the one filled button.
 import type { ComponentChildren } from 'preact';
 import { ModelRow } from '../../shared/panels/model_row';
-import { ParameterPanel } from '../../shared/panels/parameter_panel';
+import { ParameterPanel } from '../../shared/panels/parameters/parameter_panel';
 import { figure, vectorOf } from '../../shared/session/report';
 import { MainButton } from './export_button';
 import { Figures } from './figures';
 import { PartList } from './drawing/part_list';
-import type { SendToMachine } from './ribbon/send_sheet';
+import type { SendToMachine } from './sheets/send_sheet';
 import { SheetSize } from './sheet_size_row';
 import { flatView } from './views';
 import { design, planning } from './zippable_document';

@@ -15,7 +15,7 @@ import { Inspector } from './inspector';
 import { Notes } from './notes';
 import { togglePlay } from './ribbon/play';
 import { ResultsStrip } from './results_strip';
-import type { SendToMachine } from './ribbon/send_sheet';
+import type { SendToMachine } from './sheets/send_sheet';
 import { view } from './views';
 import { viewpoint, ViewportPanel } from './viewport_panel';
 import './zippable.css';

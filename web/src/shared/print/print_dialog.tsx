@@ -6,7 +6,7 @@ import { asFile, PrintSession } from './print_session';
 import { Button, Dialog, formatNumber, Icon, Parameter, withUnit } from '../../ui';
 import { download, safeFileName } from '../session/download';
 import { PagePreview } from './page_preview';
-import { ParameterPanel } from '../panels/parameter_panel';
+import { ParameterPanel } from '../panels/parameters/parameter_panel';
 import './print_dialog.css';
 import type { Services } from '../session/services';
 

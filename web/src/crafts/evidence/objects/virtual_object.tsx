@@ -5,7 +5,7 @@ import { useId } from 'preact/hooks';
 import type { Json, JsonObject, Operation } from '../../../jobs/contract';
 import { Button, Dialog } from '../../../ui';
 import { known, withoutDefaults } from '../../../shared/session/craft_document';
-import { ParameterPanel } from '../../../shared/panels/parameter_panel';
+import { ParameterPanel } from '../../../shared/panels/parameters/parameter_panel';
 import type { EvidenceSession } from '../evidence_session';
 import { inventObject } from './invent_object';
 

@@ -3,7 +3,7 @@
 import type { Json } from '../../../jobs/contract';
 import { Button, formatBytes } from '../../../ui';
 import { withoutDefaults } from '../../../shared/session/craft_document';
-import { ParameterPanel } from '../../../shared/panels/parameter_panel';
+import { ParameterPanel } from '../../../shared/panels/parameters/parameter_panel';
 import type { Scan } from '../evidence_document';
 import { evidence, registering } from '../evidence_document';
 import type { EvidenceSession } from '../evidence_session';

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Values that belong together, chosen by a name that people know: a plastic, a vacuum former, a cloth.
 import { useId } from 'preact/hooks';
-import type { JsonObject, Operation, PresetList } from '../../jobs/contract';
-import { jsonEqual } from '../../project/document';
-import { inForce } from '../session/craft_document';
-import { tipHandlers } from '../../ui';
+import type { JsonObject, Operation, PresetList } from '../../../jobs/contract';
+import { jsonEqual } from '../../../project/document';
+import { inForce } from '../../session/craft_document';
+import { tipHandlers } from '../../../ui';
 
 export interface PresetChoiceProps {
   readonly list: PresetList;

@@ -3,7 +3,7 @@
 import { render } from 'preact';
 import { act } from 'preact/test-utils';
 import { beforeEach, expect, it, vi } from 'vitest';
-import type { JsonObject, Operation } from '../../jobs/contract';
+import type { JsonObject, Operation } from '../../../jobs/contract';
 import { PresetChoice } from './preset_choice';
 
 const list = {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { useId, useState } from 'preact/hooks';
-import { formatNumber, parseNumber, tipHandlers } from '../../ui';
+import { formatNumber, parseNumber, tipHandlers } from '../../../ui';
 
 export interface VectorFieldProps {
   readonly label: string;

@@ -6,9 +6,13 @@ import { solveInFull } from '../../../shared/session/full_solve';
 import { figure } from '../../../shared/session/report';
 import { notesOf } from '../../../shared/session/report_notes';
 import { planBytes } from '../make_product';
+import type { Sheet } from './sheet_drawing';
+import { readSheets } from './sheet_drawing';
+import { SheetStage } from './sheet_stage';
 import type { SendToMachine } from './send_sheet';
 import { sendSheet, sheetCount, sheetName } from './send_sheet';
 import type { ZippableSession } from '../zippable_session';
+import './sheets.css';
 
 /** Plans asked for already: what failed is not tried again before something changes. */
 const tried = new Set<string>();
@@ -32,7 +36,7 @@ export function Sheets({ session, drawing, onSendToMachine }: SheetsProps) {
   }, [design, plan, parameters, idle]);
   const rig = drawing === 'rig.svg';
   const words = rig ? rigWords(session) : planWords(session);
-  const url = useDrawing(session, drawing);
+  const sheets = useSheets(session, drawing);
   if (design === null)
     return (
       <div class="sheets-empty">
@@ -50,18 +54,23 @@ export function Sheets({ session, drawing, onSendToMachine }: SheetsProps) {
     );
   const notes = notesOf(plan?.report ?? {}, 'notes');
   return (
-    <>
-      <div class="sheets" tabIndex={0} role="group" aria-label={rig ? 'Fastening rig' : 'Sheets to cut'}>
-        {plan && url ? <img src={url} alt={words} /> : null}
-        {plan === null && idle ? (
-          <div class="sheets-empty">
-            <p>No cutting plan was made. If a note on the model says why, change that first.</p>
-            <Button icon="scissors" onClick={() => void planBytes(session, 'plan.svg', 'plan')}>
-              Make the cutting plan
-            </Button>
-          </div>
-        ) : null}
-      </div>
+    <div class="sheets">
+      {plan && sheets ? (
+        <SheetStage
+          sheets={sheets}
+          words={words}
+          label={rig ? 'Fastening rig' : 'Sheets to cut'}
+          nameOf={(sheet) => (rig ? `Board ${sheet + 1}` : sheetName(session, sheet))}
+        />
+      ) : null}
+      {plan === null && idle ? (
+        <div class="sheets-empty">
+          <p>No cutting plan was made. If a note on the model says why, change that first.</p>
+          <Button icon="scissors" onClick={() => void planBytes(session, 'plan.svg', 'plan')}>
+            Make the cutting plan
+          </Button>
+        </div>
+      ) : null}
       {plan ? (
         <div class="sheets-foot">
           <p>{words}</p>
@@ -91,7 +100,7 @@ export function Sheets({ session, drawing, onSendToMachine }: SheetsProps) {
           ) : null}
         </div>
       ) : null}
-    </>
+    </div>
   );
 }
 
@@ -156,34 +165,19 @@ function planWords(session: ZippableSession): string {
     .join('; ');
 }
 
-/** A laser's hairlines are not to be seen at a fifth of their size: on the screen all lines are as wide. */
-const forTheEye = (svg: string): string =>
-  svg.replace(
-    /<svg[^>]*>/,
-    '$&<style>path,line,polyline,polygon,circle,rect{vector-effect:non-scaling-stroke;stroke-width:1px!important}</style>',
-  );
-
-/** The address of the plan's drawing while it is shown. */
-function useDrawing(session: ZippableSession, name: string): string | null {
-  const [url, setUrl] = useState<string | null>(null);
+/** The sheets of the plan's drawing while it is shown. */
+function useSheets(session: ZippableSession, name: string): readonly Sheet[] | null {
+  const [read, setRead] = useState<{ readonly of: string; readonly sheets: readonly Sheet[] } | null>(null);
   const drawing = session.plan.value?.outputs[name];
   useEffect(() => {
-    let made: string | null = null;
     let gone = false;
-    const read = async () => {
+    const take = async () => {
       if (drawing === undefined) return;
       const bytes = await session.services.projects.blobs.read(drawing.blob);
-      if (gone) return;
-      const drawn = forTheEye(new TextDecoder().decode(bytes));
-      made = URL.createObjectURL(new Blob([drawn], { type: 'image/svg+xml' }));
-      setUrl(made);
+      if (!gone) setRead({ of: drawing.blob, sheets: readSheets(new TextDecoder().decode(bytes)) });
     };
-    void read().catch(() => undefined);
-    return () => {
-      gone = true;
-      setUrl(null);
-      if (made) URL.revokeObjectURL(made);
-    };
+    void take().catch(() => undefined);
+    return () => void (gone = true);
   }, [drawing?.blob]);
-  return url;
+  return read !== null && read.of === drawing?.blob ? read.sheets : null;
 }

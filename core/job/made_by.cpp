@@ -39,8 +39,9 @@ Json made_by(const Operation& operation, const Json& parameters, const std::map<
 }
 
 ReportField made_by_field() {
-  return {"made_by", "Made by", "",
-          "Program, version, operation, the parameters that differ from the defaults, and the inputs. \"job\" names all that in 16 digits, which stand in the files, too."};
+  return {
+      "made_by", "Made by", "",
+      "Program, version, operation, the parameters that differ from the defaults, and the inputs. \"job\" names all that in 16 digits, which stand in the files, too."};
 }
 
 void note_made_by(OutputBlob& output, const Json& record) {

@@ -22,9 +22,10 @@ bool holds(const Bytes& file, std::string_view text) { return as_text(file).find
 
 TEST_CASE("FileNote.AMeshWithANoteIsReadAsWithout") {
   const Model model = wavy_torus(6, 8);
-  for (const auto& [format, media_type, held] :
-       {std::tuple{MeshFormat::ply, "application/x-ply", note}, {MeshFormat::obj, "model/obj", note},
-        {MeshFormat::glb, "model/gltf-binary", note}, {MeshFormat::stl, "model/stl", words}}) {
+  for (const auto& [format, media_type, held] : {std::tuple{MeshFormat::ply, "application/x-ply", note},
+                                                 {MeshFormat::obj, "model/obj", note},
+                                                 {MeshFormat::glb, "model/gltf-binary", note},
+                                                 {MeshFormat::stl, "model/stl", words}}) {
     INFO(media_type);
     const std::string name = "model." + std::string(mesh_format_info(format).extension);
     const Bytes plain = write(model, format), file = noted(plain, media_type);
@@ -54,7 +55,8 @@ TEST_CASE("FileNote.ADrawingsNoteIsEscaped") {
 TEST_CASE("FileNote.WhatIsNotAsThisProgramWritesItStays") {
   for (const char* media_type :
        {"application/x-ply", "model/obj", "model/gltf-binary", "model/stl", "image/png", "image/svg+xml"})
-    for (const std::string& text : {std::string(), std::string("\x89PNG"), std::string("glTF"), std::string(200, 'x')}) {
+    for (const std::string& text :
+         {std::string(), std::string("\x89PNG"), std::string("glTF"), std::string(200, 'x')}) {
       INFO(media_type << " " << text);
       CHECK(noted(to_bytes(text), media_type) == to_bytes(text));
     }

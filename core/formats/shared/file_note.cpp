@@ -79,8 +79,7 @@ void note_stl(Bytes& file, std::string_view words) {
   constexpr std::size_t head = 80;
   if (file.size() < head || !as_text(file).starts_with("Binary STL by Formwright")) return;
   const std::size_t used = std::min(as_text(file).find('\0'), head);
-  if (used + words.size() <= head)
-    std::ranges::copy(as_bytes(words), file.begin() + static_cast<std::ptrdiff_t>(used));
+  if (used + words.size() <= head) std::ranges::copy(as_bytes(words), file.begin() + static_cast<std::ptrdiff_t>(used));
 }
 
 struct Place {
@@ -88,9 +87,8 @@ struct Place {
   void (*put)(Bytes& file, std::string_view note);
   bool brief = false;
 };
-constexpr Place places[] = {{"application/x-ply", note_ply}, {"image/png", note_png},
-                            {"image/svg+xml", note_svg},     {"model/gltf-binary", note_glb},
-                            {"model/obj", note_obj},         {"model/stl", note_stl, true}};
+constexpr Place places[] = {{"application/x-ply", note_ply}, {"image/png", note_png}, {"image/svg+xml", note_svg},
+                            {"model/gltf-binary", note_glb}, {"model/obj", note_obj}, {"model/stl", note_stl, true}};
 
 const Place* place_in(std::string_view media_type) {
   const auto* const found = std::ranges::find(places, media_type, &Place::media_type);

@@ -4,7 +4,8 @@
 
 namespace formwright {
 
-/// Vacuum formers and plastics as values of ThermoformOptions, to begin with. The first of each list holds the defaults.
+/// Vacuum formers and plastics as values of ThermoformOptions, to begin with. The first of each list holds the
+/// defaults.
 std::vector<PresetList> sheet_presets();
 
 }  // namespace formwright

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The sheets of a plan's drawing, which has them side by side, one by one: their lines in the colours of their layers.
 
-export interface SheetLines {
+interface SheetLines {
   readonly layer: string;
   readonly colour: string;
   /** A path in mm from the sheet's upper left corner. */

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Which of an operation's parameters a person means by some words, and which of them differ from the defaults.
-import type { Json, JsonObject, ParameterSchema } from '../../../jobs/contract';
+import type { Json, JsonObject, ParameterSchema, PresetList } from '../../../jobs/contract';
 import { jsonEqual } from '../../../project/document';
 
 export type Entry = readonly [name: string, schema: ParameterSchema];
@@ -46,6 +46,16 @@ export function findParameters(entries: readonly Entry[], query: string): readon
     .filter((found): found is { entry: Entry; rank: number } => found.rank !== null)
     .sort((a, b) => a.rank - b.rank)
     .map(({ entry }) => entry);
+}
+
+/** Lists of presets that have all words, in the names of their presets, too; none where there are no words. */
+export function findPresets(lists: readonly PresetList[], query: string): readonly PresetList[] {
+  const words = wordsOf(query);
+  if (words.length === 0) return [];
+  return lists.filter(({ name, title, help, presets }) => {
+    const known = plain([name, title, help, ...presets.map((preset) => preset.title)].join(' '));
+    return words.every((word) => known.includes(word));
+  });
 }
 
 /** By group, in the order in which the groups come first. */

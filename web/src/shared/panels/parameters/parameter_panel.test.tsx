@@ -43,6 +43,7 @@ function Panel({ operation: name, errors = {} }: { operation: string; errors?: R
         (parameters.value = { ...parameters.value, [changed]: value })
       }
       onCommit={() => undefined}
+      onPreset={(values) => (parameters.value = { ...parameters.value, ...values })}
     />
   ) : null;
 }
@@ -102,4 +103,20 @@ it('a refused value is listed whatever is searched for', async () => {
   await show('thermoform-mould', { yield_strain: 'It is too large.' });
   await type('triangles');
   expect(one('[role=alert]')?.textContent).toBe('It is too large.');
+});
+
+it('presets stand in their group and are found by the names of what they stand for', async () => {
+  await show('thermoform-mould');
+  const plastics = () =>
+    one<HTMLSelectElement>('section[aria-label=Sheet] select, section[aria-label=Presets] select');
+  expect(plastics()?.selectedOptions[0]?.textContent).toBe('PVC, rigid');
+  await type('petg');
+  expect(headings()).not.toContain('Sheet');
+  expect(status()).toMatch(/^\d settings? found\.$/);
+  const select = plastics();
+  if (select) select.value = 'petg';
+  select?.dispatchEvent(new Event('change', { bubbles: true }));
+  await settle();
+  expect(parameters.value['density_kg_per_m3']).toBe(1270);
+  expect(plastics()?.selectedOptions[0]?.textContent).toBe('PETG');
 });

@@ -2,7 +2,7 @@
 // The controls of an operation, made from its declaration in the catalog.
 import type { ComponentChildren } from 'preact';
 import { useId, useState } from 'preact/hooks';
-import type { JsonObject, Operation } from '../../../jobs/contract';
+import type { JsonObject, Operation, PresetList } from '../../../jobs/contract';
 import { Icon } from '../../../ui';
 import type { Entry } from './find_parameters';
 import { groupOf, hasControl, isChanged } from './find_parameters';
@@ -26,13 +26,21 @@ const maxWithoutSearch = 13;
 
 export function ParameterPanel(props: ParameterPanelProps) {
   const entries = Object.entries(props.operation.parameters.properties).filter(hasControl);
-  const search = useParameterSearch(entries, props);
+  const presets = props.onPreset ? (props.operation.presets ?? []) : [];
+  const search = useParameterSearch(entries, presets, props);
   if (entries.length <= maxWithoutSearch) return <Groups {...props} entries={entries} />;
   return (
     <>
       <ParameterSearch search={search} />
       {search.found ? (
-        <FoundParameters found={search.found} values={props} />
+        <>
+          {search.foundPresets.length > 0 ? (
+            <section class="section" aria-label="Presets">
+              <Presets lists={search.foundPresets} panel={props} />
+            </section>
+          ) : null}
+          <FoundParameters found={search.found} values={props} />
+        </>
       ) : (
         <Groups {...props} entries={entries} />
       )}
@@ -59,7 +67,7 @@ function Groups({ entries, ...props }: ParameterPanelProps & { readonly entries:
         <section key={title} class="section" aria-label={title || 'Parameters'}>
           {title ? <h3>{title}</h3> : null}
           {props.groupHead?.[title]}
-          <Presets group={title} panel={props} />
+          <Presets lists={presetsOf(props, title)} panel={props} />
           {members.map((entry) => (
             <ParameterControl key={entry[0]} entry={entry} {...props} />
           ))}
@@ -72,16 +80,21 @@ function Groups({ entries, ...props }: ParameterPanelProps & { readonly entries:
   );
 }
 
-function Presets({ group, panel }: { readonly group: string; readonly panel: ParameterPanelProps }) {
-  const { operation, parameters, onPreset } = panel;
+const presetsOf = ({ operation }: ParameterPanelProps, group: string): readonly PresetList[] =>
+  (operation.presets ?? []).filter((list) => list.group === group);
+
+interface PresetsProps {
+  readonly lists: readonly PresetList[];
+  readonly panel: ParameterPanelProps;
+}
+
+function Presets({ lists, panel: { operation, parameters, onPreset } }: PresetsProps) {
   if (!onPreset) return null;
   return (
     <>
-      {(operation.presets ?? [])
-        .filter((list) => list.group === group)
-        .map((list) => (
-          <PresetChoice key={list.name} {...{ list, operation, parameters }} onChoose={onPreset} />
-        ))}
+      {lists.map((list) => (
+        <PresetChoice key={list.name} {...{ list, operation, parameters }} onChoose={onPreset} />
+      ))}
     </>
   );
 }
@@ -115,7 +128,7 @@ function Folded({ title, members, panel }: FoldedProps) {
         {open ? (
           <>
             {panel.groupHead?.[title]}
-            <Presets group={title} panel={panel} />
+            <Presets lists={presetsOf(panel, title)} panel={panel} />
             {members.map((entry) => (
               <ParameterControl key={entry[0]} entry={entry} {...panel} />
             ))}

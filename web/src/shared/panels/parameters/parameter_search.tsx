@@ -2,10 +2,10 @@
 // Finds a parameter by words, or lists those that differ from their defaults, each with its reset.
 import type { Ref } from 'preact';
 import { useEffect, useRef, useState } from 'preact/hooks';
-import type { Json } from '../../../jobs/contract';
+import type { Json, PresetList } from '../../../jobs/contract';
 import { formatOnStep, hideTip, Icon, IconButton } from '../../../ui';
 import type { Entry } from './find_parameters';
-import { byGroup, defaultOf, findParameters, isChanged, wordsOf } from './find_parameters';
+import { byGroup, defaultOf, findParameters, findPresets, isChanged, wordsOf } from './find_parameters';
 import type { ParameterValues } from './parameter_control';
 import { ParameterControl } from './parameter_control';
 import './parameter_search.css';
@@ -19,6 +19,8 @@ export interface Search {
   readonly changed: number;
   /** What is listed in the place of the groups; null while nothing is asked for. */
   readonly found: readonly Entry[] | null;
+  /** Lists of presets beside them. */
+  readonly foundPresets: readonly PresetList[];
   /** What was found, in a sentence; empty while nothing is asked for. */
   readonly sentence: string;
   readonly field: Ref<HTMLInputElement>;
@@ -38,7 +40,11 @@ function sentenceOf(query: string, onlyChanged: boolean, found: number, of: numb
     : `No setting has “${words}” in its name, group, unit or help. Try one shorter word.`;
 }
 
-export function useParameterSearch(entries: readonly Entry[], values: ParameterValues): Search {
+export function useParameterSearch(
+  entries: readonly Entry[],
+  presets: readonly PresetList[],
+  values: ParameterValues,
+): Search {
   const field = useRef<HTMLInputElement>(null);
   const [query, setQuery] = useState('');
   // What was listed stays while it is set, also where it passes its default.
@@ -52,7 +58,8 @@ export function useParameterSearch(entries: readonly Entry[], values: ParameterV
   const hits = findParameters(among, query);
   // A value that the solver refuses is shown in any case.
   const refused = entries.filter((entry) => values.errors[entry[0]] !== undefined && !hits.includes(entry));
-  const count = asked ? hits.length : changed.length;
+  const foundPresets = onlyChanged ? [] : findPresets(presets, query);
+  const count = asked ? hits.length + foundPresets.length : changed.length;
   return {
     query,
     setQuery,
@@ -60,6 +67,7 @@ export function useParameterSearch(entries: readonly Entry[], values: ParameterV
     setOnlyChanged: (only) => setListed(only ? names : null),
     changed: changed.length,
     found: asked || onlyChanged ? [...refused, ...hits] : null,
+    foundPresets,
     sentence: asked || onlyChanged ? sentenceOf(query, onlyChanged, count, entries.length) : '',
     field,
   };

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+import { createHash } from 'node:crypto';
 import { readFileSync } from 'node:fs';
 import {
   backend,
@@ -13,6 +14,16 @@ import {
   strip,
   test,
 } from './page';
+
+/** Of the file that says how a result was made. */
+interface Step {
+  readonly made_by: {
+    readonly operation: string;
+    readonly job: string;
+    readonly inputs: Readonly<Record<string, { readonly file_name: string; readonly sha256: string }>>;
+  };
+  readonly files: Readonly<Record<string, { readonly sha256: string }>>;
+}
 
 test('from a sample to a solid of the asked thickness', async ({ page }) => {
   await openSample(page, 'Bust');
@@ -69,21 +80,30 @@ test('cancel a solve and go on', async ({ page }) => {
   await solve(page);
 });
 
-test('other formats from the menu', async ({ page }) => {
+test('other formats from the menu, and how they were made', async ({ page }) => {
   test.skip(backend === 'mock', 'the mock makes STL only');
   await openPage(page);
   await openModel(page, fileOf('ball.obj', ballObj()));
   await solve(page);
-  for (const [label, magic] of [
-    ['3MF', 'PK'],
-    ['Height map', '\x89PNG'],
-  ] as const) {
+  const exported = async (label: string) => {
     await page.getByRole('button', { name: 'Export another format' }).click();
     const waiting = page.waitForEvent('download');
     await page.getByRole('menuitem', { name: new RegExp(`^${label}`) }).click();
-    const bytes = readFileSync(await (await waiting).path());
-    expect(bytes.toString('latin1', 0, magic.length)).toBe(magic);
-  }
+    return readFileSync(await (await waiting).path());
+  };
+  for (const [label, magic] of [
+    ['3MF', 'PK'],
+    ['Height map', '\x89PNG'],
+  ] as const)
+    expect((await exported(label)).toString('latin1', 0, magic.length)).toBe(magic);
+  const stl = await exported('STL');
+  const { steps } = JSON.parse((await exported('How it was made')).toString()) as { steps: Step[] };
+  expect(steps.map(({ made_by }) => made_by.operation)).toEqual(['import', 'relief']);
+  const [read, made] = steps;
+  expect(read?.made_by.inputs.mesh?.file_name).toBe('ball.obj');
+  expect(made?.made_by.inputs.mesh?.sha256).toBe(read?.files['model.ply']?.sha256);
+  expect(stl.toString('latin1', 0, 80)).toContain(`, job ${made?.made_by.job}`);
+  expect(made?.files['relief.stl']?.sha256).toBe(createHash('sha256').update(stl).digest('hex'));
 });
 
 test('a viewpoint set from the view stays as far away', async ({ page }) => {

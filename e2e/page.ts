@@ -156,19 +156,23 @@ export async function inEveryLook(page: Page, check: (look: string) => Promise<v
   if (before) await page.setViewportSize(before);
 }
 
+/** Fails with what axe finds serious in the page as it is; `what` says on which state of it. */
+export async function expectAccessibleNow(page: Page, what: string): Promise<void> {
+  const { violations } = await new AxeBuilder({ page }).analyze();
+  const serious = violations.filter(({ impact }) => impact === 'serious' || impact === 'critical');
+  const listed = serious.map(
+    ({ id, nodes }) => `${what}: ${id}: ${nodes.map(({ html }) => html.slice(0, 120)).join(' | ')}`,
+  );
+  expect(listed).toEqual([]);
+}
+
 /**
  * Fails with what axe finds serious in any look; `what` says on which state of the page. `screen` names a state that must
  * look as it was kept, too (screens.ts).
  */
 export async function expectAccessible(page: Page, what: string, screen?: string): Promise<void> {
   await inEveryLook(page, async (look) => {
-    const { violations } = await new AxeBuilder({ page }).analyze();
-    const serious = violations.filter(({ impact }) => impact === 'serious' || impact === 'critical');
-    const listed = serious.map(
-      ({ id, nodes }) =>
-        `${what}, ${look}: ${id}: ${nodes.map(({ html }) => html.slice(0, 120)).join(' | ')}`,
-    );
-    expect(listed).toEqual([]);
+    await expectAccessibleNow(page, `${what}, ${look}`);
     if (screen !== undefined && backend !== 'native') await expectSameScreen(page, screen);
   });
 }

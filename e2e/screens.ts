@@ -12,9 +12,9 @@ const keeping = process.env['FORMWRIGHT_KEEP_SCREENS'] !== undefined;
 /** Eight pixels wide: letters that another version of the browser smooths otherwise are the same there. */
 const block_px = 8;
 /** Of 255, of the mean of a block. */
-const largestDifference = 32;
+const largestDifference = 16;
 /** Times and counts of a run differ from run to run; a missing button or a shifted panel is more. */
-const largestShare = 0.02;
+export const largestShare = 0.002;
 
 export interface Compared {
   /** Half as large. */
@@ -71,6 +71,7 @@ export async function expectSameScreen(page: Page, name: string): Promise<void> 
   const file = `${name}_${dark ? 'dark' : 'light'}_${page.viewportSize()?.width ?? 0}.webp`;
   const before = existsSync(join(kept, file)) ? readFileSync(join(kept, file)) : null;
   const { webp, share } = await compare(page, before);
+  console.log(file, share);
   const same = share !== null && share <= largestShare;
   if (keeping && !same) {
     mkdirSync(kept, { recursive: true });

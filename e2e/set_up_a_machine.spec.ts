@@ -158,7 +158,7 @@ test('what the kerf’s scale says becomes the kerf', async ({ page }) => {
   await page.getByRole('textbox', { name: 'Kerf read from the scale' }).press('Enter');
   await button(page, 'Use as the kerf').click();
   await expect(strip(page, 'Job ready')).toBeVisible();
-  await page.getByRole('button', { name: /^Cutting \d+$/ }).click();
+  await page.getByRole('button', { name: /^Cutting 1 of \d+ changed$/ }).click();
   await expect(page.getByRole('textbox', { name: 'Kerf', exact: true })).toHaveValue(/^0\.20+$/);
 });
 

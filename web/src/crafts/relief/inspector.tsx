@@ -220,7 +220,7 @@ function ExportButton({ session, result, onSendToMill }: ExportProps) {
                 onSelect: () => void save(output),
               };
             }),
-            howMadeItem(session.title, result),
+            howMadeItem(session.title, session.document.value.model, result),
           ]}
         >
           <Icon name="chevronDown" small />

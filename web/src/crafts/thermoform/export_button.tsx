@@ -152,7 +152,13 @@ export function MainButton({ session, onForm }: { session: ThermoformSession; on
                 onSelect: () => void save(session, one),
               };
             }),
-            howMadeItem(session.title, session.result.value, session.print.value, session.mould.value),
+            howMadeItem(
+              session.title,
+              session.document.value.model,
+              session.result.value,
+              session.print.value,
+              session.mould.value,
+            ),
           ]}
         >
           <Icon name="chevronDown" small />

@@ -166,7 +166,13 @@ export function MainButton({ session, onSolve, onSendToMachine }: MainButtonProp
                 onSelect: () => void save(session, one),
               };
             }),
-            howMadeItem(session.title, result, session.plan.value, session.simulation.value),
+            howMadeItem(
+              session.title,
+              session.document.value.model,
+              result,
+              session.plan.value,
+              session.simulation.value,
+            ),
           ]}
         >
           <Icon name="chevronDown" small />

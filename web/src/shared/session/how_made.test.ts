@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { expect, it } from 'vitest';
-import type { CraftResult } from './craft_document';
+import type { CraftModel, CraftResult } from './craft_document';
 import { howMade, howMadeItem } from './how_made';
 
 const result = (report: CraftResult['report']): CraftResult => ({
@@ -20,8 +20,8 @@ interface Step {
   readonly made: string;
   readonly files: object;
 }
-const stepsOf = (results: Parameters<typeof howMade>[0]) =>
-  (JSON.parse(howMade(results)) as { readonly steps: readonly Step[] }).steps;
+const stepsOf = (results: Parameters<typeof howMade>[1], model: CraftModel | null = null) =>
+  (JSON.parse(howMade(model, results)) as { readonly steps: readonly Step[] }).steps;
 
 it('says job, time and the hash of every file, from the first step on', () => {
   const made = stepsOf([result({ made_by: record }), null, result({ made_by: { job: '2' } })]);
@@ -32,6 +32,15 @@ it('says job, time and the hash of every file, from the first step on', () => {
 
 it('a result of an earlier version is left out, and alone it says why', () => {
   expect(stepsOf([result({})])).toEqual([]);
-  expect(howMadeItem('Cat', result({})).disabledReason).toMatch(/earlier version/);
-  expect(howMadeItem('Cat', result({}), result({ made_by: record })).disabledReason).toBeUndefined();
+  expect(howMadeItem('Cat', null, result({})).disabledReason).toMatch(/earlier version/);
+  expect(howMadeItem('Cat', null, result({}), result({ made_by: record })).disabledReason).toBeUndefined();
+});
+
+it('begins with the reading of the model, which names the file', () => {
+  const mesh = { blob: 'cd', bytes: 9, media_type: 'application/x-ply' };
+  const source = { kind: 'file', file_name: 'cat.obj', file: mesh } as const;
+  const read = { source, mesh, preview: mesh, report: { made_by: { job: '0' } } };
+  const made = stepsOf([result({ made_by: record })], read);
+  expect(made.map((step) => step.made_by.job)).toEqual(['0', record.job]);
+  expect(made[0]?.files).toEqual({ 'model.ply': { sha256: 'cd', bytes: 9 } });
 });

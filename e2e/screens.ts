@@ -12,9 +12,9 @@ const keeping = process.env['FORMWRIGHT_KEEP_SCREENS'] !== undefined;
 /** Eight pixels wide: letters that another version of the browser smooths otherwise are the same there. */
 const block_px = 8;
 /** Of 255, of the mean of a block. */
-const largestDifference = 8;
-/** A missing button or a shifted panel is more. */
-export const largestShare = 0.002;
+const largestDifference = 16;
+/** A missing card or a shifted panel is more. */
+export const largestShare = 0.005;
 
 /** What says how long something took or will take, which differs from run to run. */
 const timesOn = (page: Page) => [page.getByRole('contentinfo'), page.locator('.inspector-foot p')];
@@ -28,7 +28,11 @@ export interface Compared {
 
 /** What the page shows now, and how much of it is not as in `before`, a WebP picture half as large. */
 export async function compare(page: Page, before: Buffer | null): Promise<Compared> {
-  const shot = await page.screenshot({ animations: 'disabled', caret: 'hide', mask: timesOn(page) });
+  const shot = await page.screenshot({
+    animations: 'disabled',
+    caret: 'hide',
+    mask: timesOn(page),
+  });
   const { webp, share } = await page.evaluate(
     async ({ now64, before64, block, largest }) => {
       const pictureOf = (base64: string) =>
@@ -50,7 +54,10 @@ export async function compare(page: Page, before: Buffer | null): Promise<Compar
       const other = await pictureOf(before64);
       if (other.width !== size[0] || other.height !== size[1]) return { webp: base64, share: 1 };
       const blocks = [Math.floor(now.width / block), Math.floor(now.height / block)] as const;
-      const [a, b] = [now, other].map((picture) => drawn(picture, ...blocks).pixels);
+      // Encoded alike: what the encoder loses is lost in both.
+      const [a, b] = [await createImageBitmap(half), other].map(
+        (picture) => drawn(picture, ...blocks).pixels,
+      );
       let different = 0;
       for (let i = 0; i < 4 * blocks[0] * blocks[1]; i += 4)
         if ([0, 1, 2].some((k) => Math.abs((a?.[i + k] ?? 0) - (b?.[i + k] ?? 0)) > largest)) ++different;

@@ -14,7 +14,7 @@ const block_px = 8;
 /** Of 255, of the mean of a block. */
 const largestDifference = 16;
 /** A missing card or a shifted panel is more. */
-export const largestShare = 0.005;
+export const largestShare = 0.02;
 
 /** What says how long something took or will take, which differs from run to run. */
 const timesOn = (page: Page) => [page.getByRole('contentinfo'), page.locator('.inspector-foot p')];

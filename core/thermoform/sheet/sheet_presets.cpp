@@ -6,8 +6,8 @@
 namespace formwright {
 namespace {
 
-/// Densities of unfilled grades (ISO 1183, as data sheets give them). Stiffness is left out: at forming temperature it
-/// depends on the heating more than on the plastic, by a factor of ten within a forming range.
+/// Usual densities of unfilled grades. Stiffness is left out: no source for these plastics at forming temperature is
+/// known.
 Preset plastic(std::string name, std::string title, double density_kg_per_m3, std::string hint) {
   return {std::move(name), std::move(title), {{"density_kg_per_m3", density_kg_per_m3}}, std::move(hint)};
 }

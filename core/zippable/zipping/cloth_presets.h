@@ -4,8 +4,8 @@
 
 namespace formwright {
 
-/// Cloths as values of ZippingOptions, to begin with: orders of magnitude from tables of measured fabrics (Kawabata,
-/// The Standardization and Analysis of Hand Evaluation, 1980), where cloths of one name differ by a factor of two.
+/// Cloths as values of ZippingOptions, to begin with: orders of magnitude, taken from no single table. Cloths of one
+/// name differ by a factor of two and more.
 PresetList cloth_presets();
 
 }  // namespace formwright

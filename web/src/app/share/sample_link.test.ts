@@ -129,7 +129,7 @@ describe('a link that somebody else wrote', () => {
     expect(name('<img src=x onerror=alert(1)>')).toBe('<img src=x onerror=alert(1)>'); // text, and shown as such
   });
 
-  it('is told from places and tokens', () => {
+  it('is not taken for a place or a token', () => {
     for (const hash of ['', '#/relief', '#/start', '#token=a', '#/opened', '#/'])
       expect(isSampleLink(hash), hash).toBe(false);
   });

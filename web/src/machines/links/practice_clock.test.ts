@@ -25,7 +25,7 @@ function pass(clock: PracticeClock, wall: Wall, seconds: number, isFast = () => 
 }
 
 describe('the time of a practice machine', () => {
-  it('is the wall’s at first, and runs as many times faster as it is told', () => {
+  it('is the wall’s at first, and runs as many times faster as its speed says', () => {
     const wall = new Wall();
     const clock = new PracticeClock(wall.read);
     expect(clock.now_s).toBe(wall.now_s);
@@ -94,7 +94,7 @@ describe('the time of a practice machine', () => {
     expect(Math.abs(clock.now_s - wall.now_s)).toBeLessThan(0.05);
   });
 
-  it('is slower than it was told where the page cannot keep up, so that a stop is heard', () => {
+  it('is slower than its speed where the page cannot keep up, so that a stop is heard', () => {
     const wall = new Wall();
     wall.look_s = 0.002; // what a slice costs
     const clock = new PracticeClock(wall.read);

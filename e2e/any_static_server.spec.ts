@@ -4,7 +4,7 @@ import { existsSync, readFileSync, statSync } from 'node:fs';
 import { createServer, type Server } from 'node:http';
 import type { AddressInfo } from 'node:net';
 import { extname, join, resolve, sep } from 'node:path';
-import { backend, expect, solve, strip, test } from './page';
+import { backend, chooseSample, expect, solve, strip, test } from './page';
 
 const dist = resolve(import.meta.dirname, '../web/dist');
 const folder = '/tools/3d/form/';
@@ -59,8 +59,7 @@ test('the page works below any path of a plain file server, and afterwards witho
     if (/^https?:/.test(request.url()) && !request.url().startsWith(address)) elsewhere.push(request.url());
   });
   const preview = async () => {
-    await page.locator('.gallery button', { hasText: 'Torus' }).click();
-    await expect(strip(page, 'Preview up to date')).toBeVisible();
+    await chooseSample(page, 'Torus');
   };
   await page.goto(address);
   // Nothing isolates the first visit: it solves without shared memory and has nothing to warn of.

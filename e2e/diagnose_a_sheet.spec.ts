@@ -2,7 +2,17 @@
 import type { Page } from '@playwright/test';
 import { readFileSync } from 'node:fs';
 import { measuredObject, scannedSheet } from './measured_object';
-import { backend, expect, expectAccessible, fileOf, openPage, strip, test } from './page';
+import {
+  backend,
+  chooseSample,
+  expect,
+  expectAccessible,
+  fileOf,
+  goToRoom,
+  openPage,
+  strip,
+  test,
+} from './page';
 
 test.skip(backend === 'mock', 'the mock makes reliefs only');
 test.setTimeout(400_000);
@@ -11,7 +21,7 @@ const seen = { timeout: 300_000 };
 
 async function openRoom(page: Page): Promise<void> {
   await openPage(page);
-  await page.getByRole('link', { name: 'Evidence', exact: true }).click();
+  await goToRoom(page, 'Evidence');
   await expect(
     page.getByText('Find out why a formed part came out wrong, and what to change in the next print.'),
   ).toBeVisible();
@@ -81,9 +91,8 @@ test(
 
     await page.getByRole('button', { name: 'Use in the next print' }).click();
     await expect(page.getByRole('button', { name: 'Used in the next print' })).toBeVisible();
-    await page.getByRole('link', { name: 'Thermoform', exact: true }).click();
-    await page.locator('.gallery button', { hasText: 'Pyramid' }).click();
-    await expect(strip(page, 'Preview up to date')).toBeVisible();
+    await goToRoom(page, 'Thermoform');
+    await chooseSample(page, 'Pyramid');
     await expect(page.getByText('Machine: Diagnosed machine')).toBeVisible();
     await expect(page.getByText('Saved', { exact: true })).toBeVisible();
 
@@ -93,7 +102,7 @@ test(
     await expect(page.getByText('Machine: Diagnosed machine')).toBeHidden();
     await page.keyboard.press('Control+z');
     await expect(page.getByText('Machine: Diagnosed machine')).toBeVisible();
-    await page.getByRole('link', { name: 'Evidence', exact: true }).click();
+    await goToRoom(page, 'Evidence');
     await expect(strip(page, 'Diagnosis ready')).toBeVisible();
     await expect(cause).toBeVisible();
     await expect(page.getByRole('img', { name: /^Height, simulated minus measured/ })).toBeVisible();

@@ -1,21 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A setting is found by words, whether its group is folded or not; what was changed is listed and reset.
 import type { Page } from '@playwright/test';
-import { backend, expect, expectAccessible, openPage, strip, test } from './page';
+import { backend, expect, expectAccessible, openSampleIn, test } from './page';
 
 test.skip(backend !== 'wasm', 'the mock makes reliefs only; the worker serves the same page');
 
-async function openPyramid(page: Page): Promise<void> {
-  await openPage(page);
-  await page.getByRole('link', { name: 'Thermoform', exact: true }).click();
-  await page.locator('.gallery button', { hasText: 'Pyramid' }).click();
-  await expect(strip(page, 'Preview up to date')).toBeVisible();
-}
 const field = (page: Page) => page.getByRole('searchbox', { name: 'Find a setting' });
 const found = (page: Page) => page.getByRole('search', { name: 'Settings' }).getByRole('status');
 
 test('a setting is found by its name from the keyboard, changed, listed and reset', async ({ page }) => {
-  await openPyramid(page);
+  await openSampleIn(page, 'Thermoform', 'Pyramid');
   const strain = page.getByRole('textbox', { name: 'Yield strain', exact: true });
   await expect(strain).toBeHidden();
   await page.keyboard.press('p');
@@ -43,7 +37,7 @@ test('a setting is found by its name from the keyboard, changed, listed and rese
 });
 
 test('every room with many settings has the search, and the list of keys names it', async ({ page }) => {
-  await openPyramid(page);
+  await openSampleIn(page, 'Thermoform', 'Pyramid');
   for (const [room, setting] of [
     ['Relief', 'Thickness'],
     ['Zippable', 'Seam allowance'],
@@ -60,7 +54,7 @@ test('every room with many settings has the search, and the list of keys names i
 });
 
 test('what a search for a setting finds', async ({ page }) => {
-  await openPyramid(page);
+  await openSampleIn(page, 'Thermoform', 'Pyramid');
   await field(page).fill('mm');
   await expect(found(page)).toContainText('settings found');
   await expectAccessible(page, 'found');

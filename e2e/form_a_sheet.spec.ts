@@ -1,20 +1,31 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import type { Page } from '@playwright/test';
 import { readFileSync } from 'node:fs';
-import { backend, ballObj, expect, expectAccessible, fileOf, openPage, readStl, strip, test } from './page';
+import {
+  backend,
+  ballObj,
+  chooseSample,
+  expect,
+  expectAccessible,
+  fileOf,
+  goToRoom,
+  openPage,
+  readStl,
+  strip,
+  test,
+} from './page';
 
 test.skip(backend === 'mock', 'the mock makes reliefs only');
 
 async function openRoom(page: Page): Promise<void> {
   await openPage(page);
-  await page.getByRole('link', { name: 'Thermoform', exact: true }).click();
+  await goToRoom(page, 'Thermoform');
   await expect(page.getByText('A shell starts from a model.')).toBeVisible();
 }
 
 async function openSample(page: Page, title: string): Promise<void> {
   await openRoom(page);
-  await page.locator('.gallery button', { hasText: title }).click();
-  await expect(strip(page, 'Preview up to date')).toBeVisible();
+  await chooseSample(page, title);
 }
 
 /** Coarse sheets are formed quickly; what is told here does not depend on how fine they are. */
@@ -153,13 +164,13 @@ test('a model with its material, and a reload that keeps the work of both rooms'
   await expect(strip(page, 'Preview up to date')).toBeVisible();
   await coarse(page);
   await form(page);
-  await page.getByRole('link', { name: 'Relief', exact: true }).click();
+  await goToRoom(page, 'Relief');
   await page.locator('input[type=file]').setInputFiles(fileOf('other.obj', ballObj()));
   await expect(strip(page, 'Preview up to date')).toBeVisible();
   await expect(page.getByText('Saved', { exact: true })).toBeVisible();
   await page.reload();
   await expect(page.locator('.model-row strong')).toHaveText('other.obj');
-  await page.getByRole('link', { name: 'Thermoform', exact: true }).click();
+  await goToRoom(page, 'Thermoform');
   await expect(strip(page, 'Sheet formed')).toBeVisible();
   await expect(page.locator('.model-row strong')).toHaveText('ball.obj');
   await expect(page.getByRole('list', { name: 'Earlier results' }).getByRole('button')).toHaveCount(1);
@@ -169,8 +180,7 @@ test('axe finds nothing serious in the room', { tag: '@screens' }, async ({ page
   test.skip(backend === 'native', 'the worker serves the same page');
   await openRoom(page);
   await expectAccessible(page, 'empty');
-  await page.locator('.gallery button', { hasText: 'Pyramid' }).click();
-  await expect(strip(page, 'Preview up to date')).toBeVisible();
+  await chooseSample(page, 'Pyramid');
   await expectAccessible(page, 'preview', 'shell');
   await page.getByRole('button', { name: /^Material/ }).click();
   await expectAccessible(page, 'folded group');

@@ -9,7 +9,7 @@ import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
 import { createInterface } from 'node:readline';
 import { allow, browserOf, chip, confirm, forbid, hasUmockdev, plate } from './machine_bench';
-import { address, backend, expect, fileOf, test } from './page';
+import { address, backend, expect, fileOf, strip, test } from './page';
 
 test.skip(backend !== 'wasm', 'the cable is the page’s own: solving does not come into it');
 
@@ -112,7 +112,7 @@ test('a K40 on USB: connect, home, cut through spoiled packets, and the cable pu
     bench.tell('spoil 3');
     await page.getByRole('button', { name: 'Start', exact: true }).click();
     await confirm(page, 'Start with the laser on');
-    await expect(page.getByRole('contentinfo').locator('strong').getByText('plate is done')).toBeVisible({
+    await expect(strip(page, 'plate is done')).toBeVisible({
       timeout: 90_000,
     });
     expect(letters(bench.packets().slice(1).join(''))).toBe(letters(body));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-import { backend, expect, fileOf, openPage, openSample, solve, strip, test } from './page';
+import { backend, chooseSample, expect, fileOf, openPage, openSample, solve, strip, test } from './page';
 
 test('a reload keeps model, settings and results', async ({ page }) => {
   await openSample(page);
@@ -43,8 +43,7 @@ test('two tabs keep out of each other’s way', async ({ page, context }) => {
   const other = await context.newPage();
   await openPage(other);
   await expect(other.getByText(/is open in another tab; here is a new project/)).toBeVisible();
-  await other.locator('.gallery button', { hasText: 'Star' }).click();
-  await expect(strip(other, 'Preview up to date')).toBeVisible();
+  await chooseSample(other, 'Star');
   await expect(other.getByText('Saved', { exact: true })).toBeVisible();
   // What the first tab deletes is its own: the other’s model, which it has never seen, stays.
   await page.locator('.project').click();

@@ -8,7 +8,7 @@ import { existsSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
 import { allow, browserOf, chip, confirm, forbid, hasUmockdev, plate } from './machine_bench';
-import { address, backend, expect, fileOf, test } from './page';
+import { address, backend, expect, fileOf, strip, test } from './page';
 
 test.skip(backend !== 'wasm', 'the cable is the page’s own: solving does not come into it');
 
@@ -105,7 +105,7 @@ test('a laser on a cable: connect, home, cut, hold, go on, and the cable pulled'
     await expect(chip(page, 'Paused')).toBeVisible();
     await page.getByRole('button', { name: 'Resume' }).click();
     await confirm(page, 'Resume');
-    await expect(page.getByRole('contentinfo').locator('strong').getByText('plate is done')).toBeVisible({
+    await expect(strip(page, 'plate is done')).toBeVisible({
       timeout: 90_000,
     });
 

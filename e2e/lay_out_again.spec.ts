@@ -1,22 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A cutting plan for a larger sheet than the laser's bed: one button lays it out again.
 import { addLaser, button } from './machine_room';
-import { backend, expect, openPage, strip, test } from './page';
+import { backend, expect, goToRoom, makeRibbon, openSampleIn, strip, test } from './page';
 
 test.skip(backend !== 'wasm', 'the page does the same with the worker');
 
 test('a sheet that is larger than the bed is laid out again for it', async ({ page }) => {
   test.setTimeout(420_000);
-  await openPage(page);
-  await page.getByRole('link', { name: 'Zippable', exact: true }).click();
-  await page.locator('.gallery button', { hasText: 'Star' }).click();
-  await expect(strip(page, 'Preview up to date')).toBeVisible();
+  await openSampleIn(page, 'Zippable', 'Star');
   const size = page.getByRole('textbox', { name: 'Size', exact: true });
   await size.fill('700');
   await size.press('Enter');
   await expect(strip(page, 'Preview up to date')).toBeVisible();
-  await page.getByRole('button', { name: 'Make the ribbon', exact: true }).click();
-  await expect(strip(page, 'Ribbon unfolded')).toBeVisible({ timeout: 150_000 });
+  await makeRibbon(page);
   await page.getByRole('radio', { name: 'Sheets to cut' }).click();
   // Set by hand, a sheet may be too large for the machine.
   const width = page.getByRole('textbox', { name: 'Sheet width' });
@@ -43,12 +39,8 @@ test('the sheets follow the laser that is chosen, and stay in a project that is 
   page,
 }) => {
   test.setTimeout(300_000);
-  await openPage(page);
-  await page.getByRole('link', { name: 'Zippable', exact: true }).click();
-  await page.locator('.gallery button', { hasText: 'Star' }).click();
-  await expect(strip(page, 'Preview up to date')).toBeVisible();
-  await page.getByRole('button', { name: 'Make the ribbon', exact: true }).click();
-  await expect(strip(page, 'Ribbon unfolded')).toBeVisible({ timeout: 150_000 });
+  await openSampleIn(page, 'Zippable', 'Star');
+  await makeRibbon(page);
   await page.getByRole('radio', { name: 'Sheets to cut' }).click();
   await expect(page.getByRole('img', { name: / of 400 × 400\smm; / })).toBeVisible({ timeout: 60_000 });
 
@@ -73,7 +65,7 @@ test('the sheets follow the laser that is chosen, and stay in a project that is 
   await expect(page.getByRole('img', { name: / of 400 × 400\smm; / })).toBeVisible();
 
   await addLaser(page, 'Workshop', '800', '500');
-  await page.getByRole('link', { name: 'Zippable', exact: true }).click();
+  await goToRoom(page, 'Zippable');
   await expect(page.getByRole('img', { name: / of 800 × 500\smm; / })).toBeVisible({ timeout: 60_000 });
   await expect(page.getByText('Saved', { exact: true })).toBeVisible();
 
@@ -83,7 +75,7 @@ test('the sheets follow the laser that is chosen, and stay in a project that is 
   await addLaser(page, 'Small', '300', '200');
   await page.locator('.project').click();
   await page.getByRole('menuitemradio', { name: /^Star/ }).click();
-  await page.getByRole('link', { name: 'Zippable', exact: true }).click();
+  await goToRoom(page, 'Zippable');
   await page.getByRole('radio', { name: 'Sheets to cut' }).click();
   await expect(page.getByRole('img', { name: / of 800 × 500\smm; / })).toBeVisible();
   await expect(page.getByText(/^Workshop: 800 × 500\smm$/)).toBeVisible();

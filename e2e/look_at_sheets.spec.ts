@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The sheets of a cutting plan are looked at: zoomed, moved, one by one and all together.
 import type { Locator, Page } from '@playwright/test';
-import { address, backend, expect, expectAccessible, strip, test } from './page';
+import { address, backend, expect, expectAccessible, makeRibbon, strip, test } from './page';
 
 test.skip(backend !== 'wasm', 'the mock makes reliefs only; the worker serves the same page');
 
@@ -16,8 +16,7 @@ async function openSheets(page: Page): Promise<void> {
   const link = '#/open?v=1&name=Star&zippable=star&zippable.bed_x_mm=150&zippable.bed_y_mm=120';
   await page.evaluate((hash) => (location.hash = hash), link);
   await expect(strip(page, 'Preview up to date')).toBeVisible();
-  await tool(page, 'Make the ribbon').click();
-  await expect(strip(page, 'Ribbon unfolded')).toBeVisible({ timeout: 150_000 });
+  await makeRibbon(page);
   await page.getByRole('radio', { name: 'Sheets to cut' }).click();
   await expect(drawing(page)).toBeVisible();
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the stories of the machines' room share: a drawing, the practice machine, its questions and buttons.
 import type { Page } from '@playwright/test';
-import { expect, fileOf, openPage, strip } from './page';
+import { expect, fileOf, goToRoom, openPage, strip } from './page';
 
 /** A square with a hole, and a mark: 40 by 40 mm. */
 export const square = fileOf(
@@ -21,7 +21,7 @@ export const dialog = (page: Page) => page.getByRole('dialog');
 
 export async function openRoom(page: Page): Promise<void> {
   await openPage(page);
-  await page.getByRole('link', { name: 'Machines', exact: true }).click();
+  await goToRoom(page, 'Machines');
   await expect(button(page, 'Practise without a machine')).toBeVisible();
 }
 
@@ -33,7 +33,7 @@ export async function openDrawing(page: Page, file = square): Promise<void> {
 
 /** Adds a laser with a bed of this size, which is chosen then. */
 export async function addLaser(page: Page, name: string, width_mm: string, depth_mm: string): Promise<void> {
-  await page.getByRole('link', { name: 'Machines', exact: true }).click();
+  await goToRoom(page, 'Machines');
   const menu = page.locator('.profile-button');
   await menu.click();
   await page.getByRole('menuitem', { name: 'Add a machine' }).click();

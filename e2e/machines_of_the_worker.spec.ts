@@ -3,7 +3,7 @@
 import type { Page } from '@playwright/test';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { backend, expect, fileOf, openPage, strip, test } from './page';
+import { backend, expect, fileOf, goToRoom, openPage, openSampleIn, strip, test } from './page';
 import { addMachine, isInstalled, Peer, removeMachine } from './worker_peers';
 
 test.skip(backend !== 'native', 'a page alone reaches none of them');
@@ -25,7 +25,7 @@ test('a laser at the worker’s port: connect, home, cut, stop; a page that goes
   try {
     addMachine('Shed', `serial:${await laser.startLaser()}`, '--controller', 'grbl');
     await openPage(page);
-    await page.getByRole('link', { name: 'Machines', exact: true }).click();
+    await goToRoom(page, 'Machines');
     await page.getByLabel('Model or project file').setInputFiles(square);
     await expect(strip(page, 'Job ready')).toBeVisible();
     await page.getByRole('button', { name: 'Shed, through the worker' }).click();
@@ -53,7 +53,7 @@ test('a laser at the worker’s port: connect, home, cut, stop; a page that goes
     await confirm(page, 'Start with the laser on');
     await expect(chip(page)).toHaveText('Working');
     await page.reload();
-    await page.getByRole('link', { name: 'Machines', exact: true }).click();
+    await goToRoom(page, 'Machines');
     await page.getByRole('button', { name: 'Shed, through the worker' }).click();
     await expect(chip(page)).toHaveText('Paused', { timeout: 20_000 });
     await page.getByRole('button', { name: 'Resume' }).click();
@@ -76,10 +76,7 @@ test('a mould is sliced and sent to a print server, and started only when that i
     const key = join(peer.folder, 'key.txt');
     writeFileSync(key, server.key);
     addMachine('Octo', server.url, '--kind', 'octoprint', '--api-key-file', key);
-    await openPage(page);
-    await page.getByRole('link', { name: 'Thermoform', exact: true }).click();
-    await page.locator('.gallery button', { hasText: 'Pyramid' }).click();
-    await expect(strip(page, 'Preview up to date')).toBeVisible();
+    await openSampleIn(page, 'Thermoform', 'Pyramid');
     await page.getByRole('button', { name: /^Accuracy/ }).click();
     await page.getByRole('textbox', { name: 'Triangles' }).fill('1000');
     await page.getByRole('textbox', { name: 'Triangles' }).press('Enter');
@@ -112,7 +109,7 @@ test('a mould is sliced and sent to a print server, and started only when that i
       .poll(async () => ((await request('/api/job')) as { state: string }).state)
       .toMatch(/Printing|Starting/);
     await page.keyboard.press('Escape');
-    await page.getByRole('link', { name: 'Machines', exact: true }).click();
+    await goToRoom(page, 'Machines');
     await page.getByRole('button', { name: 'Stop the print' }).click({ timeout: 30_000 });
     await expect
       .poll(async () => ((await request('/api/job')) as { state: string }).state, { timeout: 60_000 })

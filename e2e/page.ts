@@ -39,14 +39,37 @@ export async function openPage(page: Page): Promise<void> {
 }
 
 /** What the strip says; said a second time for the ear only. */
-export const strip = (page: Page, title: string) =>
+export const strip = (page: Page, title: string | RegExp) =>
   page.getByRole('contentinfo').locator('strong').getByText(title);
+
+export type Room = 'Relief' | 'Thermoform' | 'Zippable' | 'Evidence' | 'Machines';
+/** By its name in the bar at the top. */
+export async function goToRoom(page: Page, room: Room): Promise<void> {
+  await page.getByRole('link', { name: room, exact: true }).click();
+}
+
+/** One of the samples of an empty room. */
+export async function chooseSample(page: Page, title: string): Promise<void> {
+  await page.locator('.gallery button', { hasText: title }).click();
+  await expect(strip(page, 'Preview up to date')).toBeVisible();
+}
 
 /** The torus is the quickest; stories that are about time take the bust. */
 export async function openSample(page: Page, title = 'Torus'): Promise<void> {
   await openPage(page);
-  await page.locator('.gallery button', { hasText: title }).click();
-  await expect(strip(page, 'Preview up to date')).toBeVisible();
+  await chooseSample(page, title);
+}
+
+export async function openSampleIn(page: Page, room: Room, title: string): Promise<void> {
+  await openPage(page);
+  await goToRoom(page, room);
+  await chooseSample(page, title);
+}
+
+/** In the zippable room. */
+export async function makeRibbon(page: Page): Promise<void> {
+  await page.getByRole('button', { name: 'Make the ribbon', exact: true }).click();
+  await expect(strip(page, 'Ribbon unfolded')).toBeVisible({ timeout: 150_000 });
 }
 
 /** A model on the start page: the page asks what becomes of it. */

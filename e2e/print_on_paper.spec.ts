@@ -4,7 +4,7 @@ import type { Page } from '@playwright/test';
 import { execFileSync } from 'node:child_process';
 import { readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join, resolve } from 'node:path';
-import { backend, expect, expectAccessible, openPage, strip, test } from './page';
+import { backend, expect, expectAccessible, goToRoom, openPage, openSampleIn, strip, test } from './page';
 import { addMachine, askWorker, isInstalled, Peer, removeMachine } from './worker_peers';
 
 test.skip(backend === 'mock', 'the mock makes reliefs only');
@@ -18,10 +18,7 @@ const choose = async (page: Page, name: RegExp | string) => {
 };
 
 async function openPicture(page: Page, sample: string): Promise<void> {
-  await openPage(page);
-  await page.getByRole('link', { name: 'Thermoform', exact: true }).click();
-  await page.locator('.gallery button', { hasText: sample }).click();
-  await expect(strip(page, 'Preview up to date')).toBeVisible();
+  await openSampleIn(page, 'Thermoform', sample);
   await page.getByRole('button', { name: /^Accuracy/ }).click();
   await page.getByRole('textbox', { name: 'Triangles' }).fill('1500');
   await page.getByRole('textbox', { name: 'Triangles' }).press('Enter');
@@ -132,7 +129,7 @@ test('without a printer: pages for the paper that is chosen, as a PDF', async ({
 test('the print dialog', { tag: '@screens' }, async ({ page }) => {
   test.skip(backend === 'native', 'the worker serves the same page');
   await openPage(page);
-  await page.getByRole('link', { name: 'Evidence', exact: true }).click();
+  await goToRoom(page, 'Evidence');
   await page.getByRole('button', { name: 'Print a pattern' }).click();
   await expectAccessible(page, 'pattern dialog');
   const waiting = page.waitForEvent('download', { timeout: 120_000 });

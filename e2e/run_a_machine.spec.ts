@@ -17,7 +17,7 @@ import {
   startIt,
   setSpeed,
 } from './machine_room';
-import { backend, expect, openPage, openSample, solve, strip, test } from './page';
+import { backend, expect, goToRoom, makeRibbon, openSample, openSampleIn, solve, strip, test } from './page';
 
 test.skip(
   backend !== 'wasm',
@@ -26,12 +26,8 @@ test.skip(
 
 test('from the sample star to a finished laser job', async ({ page }) => {
   test.setTimeout(300_000);
-  await openPage(page);
-  await page.getByRole('link', { name: 'Zippable', exact: true }).click();
-  await page.locator('.gallery button', { hasText: 'Star' }).click();
-  await expect(strip(page, 'Preview up to date')).toBeVisible();
-  await page.getByRole('button', { name: 'Make the ribbon', exact: true }).click();
-  await expect(strip(page, 'Ribbon unfolded')).toBeVisible({ timeout: 150_000 });
+  await openSampleIn(page, 'Zippable', 'Star');
+  await makeRibbon(page);
   await page.getByRole('radio', { name: 'Sheets to cut' }).click();
   // Smaller than the bed: the job begins where the head is led.
   for (const name of ['Sheet width', 'Sheet depth']) {
@@ -62,12 +58,7 @@ test('from the sample star to a finished laser job', async ({ page }) => {
   await startIt(page);
   await expect(page.getByRole('progressbar')).toBeVisible();
   await page.getByRole('radio', { name: '16×', exact: true }).click(); // two minutes of a real laser
-  await expect(
-    page
-      .getByRole('contentinfo')
-      .locator('strong')
-      .getByText(/ is done$/),
-  ).toBeVisible({ timeout: 150_000 });
+  await expect(strip(page, / is done$/)).toBeVisible({ timeout: 150_000 });
   await page.getByRole('radio', { name: 'Console' }).click();
   await page.getByText('1 job so far').click();
   await expect(page.getByText(/done after /)).toBeVisible();
@@ -154,12 +145,7 @@ test('a practice job is sped up by keyboard; its time stays that of a real machi
   await speeds.getByRole('radio', { name: '4×', exact: true }).click();
   await startIt(page);
   await button(page, 'Stop').click();
-  await expect(
-    page
-      .getByRole('contentinfo')
-      .locator('strong')
-      .getByText(/^Job stopped at \d+ %$/),
-  ).toBeVisible({ timeout: 3000 });
+  await expect(strip(page, /^Job stopped at \d+ %$/)).toBeVisible({ timeout: 3000 });
   await button(page, 'Disconnect').click();
   await expect(speeds).toHaveCount(0);
 });
@@ -170,12 +156,7 @@ test('stopped in the middle: the position is unknown, and the rest is cut after 
   await startIt(page);
   await expect(page.getByRole('progressbar')).not.toHaveAttribute('aria-valuenow', /^[0-9]$/);
   await button(page, 'Stop').click();
-  await expect(
-    page
-      .getByRole('contentinfo')
-      .locator('strong')
-      .getByText(/^Job stopped at \d+ %$/),
-  ).toBeVisible();
+  await expect(strip(page, /^Job stopped at \d+ %$/)).toBeVisible();
   await expect(position(page).getByText('unknown')).toHaveCount(2);
   await expect(chip(page)).toHaveText('Stopped');
   await expect(page.getByRole('button', { name: /^Cut the rest/ })).toHaveAttribute('aria-disabled', 'true');
@@ -191,18 +172,13 @@ test('Stop on the keyboard and in another room', async ({ page }) => {
   await openDrawing(page);
   await makeReady(page);
   await startIt(page);
-  await page.getByRole('link', { name: 'Relief', exact: true }).click();
+  await goToRoom(page, 'Relief');
   const bar = page.getByRole('complementary', { name: 'The machine' });
   await expect(bar.getByText(/^Working on square/)).toBeVisible();
   await page.keyboard.press('Control+.');
   await expect(bar).toBeHidden();
-  await page.getByRole('link', { name: 'Machines', exact: true }).click();
-  await expect(
-    page
-      .getByRole('contentinfo')
-      .locator('strong')
-      .getByText(/^Job stopped at/),
-  ).toBeVisible();
+  await goToRoom(page, 'Machines');
+  await expect(strip(page, /^Job stopped at/)).toBeVisible();
 });
 
 test('a relief goes to a mill: its job, its way in space, its first lines', async ({ page }) => {
@@ -274,12 +250,7 @@ test('a relief goes to a mill: its job, its way in space, its first lines', asyn
   await withSpindle.click();
   await expect(chip(page)).toHaveText('Working');
   await button(page, 'Stop').click();
-  await expect(
-    page
-      .getByRole('contentinfo')
-      .locator('strong')
-      .getByText(/^Job stopped at/),
-  ).toBeVisible();
+  await expect(strip(page, /^Job stopped at/)).toBeVisible();
 
   // Another depth is another job: the old one cannot be started.
   await page.getByRole('textbox', { name: 'Depth', exact: true }).fill('4');

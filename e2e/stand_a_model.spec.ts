@@ -1,16 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Which way up a model stands in the thermoforming room: laid on a side, placed on a face, turned and tilted.
 import type { Locator, Page } from '@playwright/test';
-import { backend, expect, expectAccessible, openPage, strip, test } from './page';
+import { backend, expect, expectAccessible, openSampleIn, strip, test } from './page';
 
 test.skip(backend !== 'wasm', 'the mock makes reliefs only; the worker serves the same page');
-
-async function openPyramid(page: Page): Promise<void> {
-  await openPage(page);
-  await page.getByRole('link', { name: 'Thermoform', exact: true }).click();
-  await page.locator('.gallery button', { hasText: 'Pyramid' }).click();
-  await expect(strip(page, 'Preview up to date')).toBeVisible();
-}
 
 const faces = (page: Page) => page.getByRole('listbox', { name: 'Faces, the largest first' });
 const placeOnFace = (page: Page) => page.getByRole('button', { name: 'Place on face', exact: true });
@@ -36,7 +29,7 @@ async function middleOf(handle: Locator): Promise<{ x: number; y: number }> {
 test('a model on its side, on a face, tilted and turned by keyboard alone, each one step to undo', async ({
   page,
 }) => {
-  await openPyramid(page);
+  await openSampleIn(page, 'Thermoform', 'Pyramid');
   await page.getByRole('button', { name: /^Advanced/ }).click();
   expect(await up(page)).toEqual([0, 1, 0]);
   await page.getByRole('button', { name: 'Left side' }).focus();
@@ -86,7 +79,7 @@ test('a model on its side, on a face, tilted and turned by keyboard alone, each 
 test('a face pressed on the model comes to lie on the plate; its handle turns it in steps of 15°', async ({
   page,
 }) => {
-  await openPyramid(page);
+  await openSampleIn(page, 'Thermoform', 'Pyramid');
   await page.getByRole('button', { name: /^Advanced/ }).click();
   await placeOnFace(page).click();
   const wall = page.locator('.face-overlay polygon.facing').first();
@@ -125,7 +118,7 @@ test('a face pressed on the model comes to lie on the plate; its handle turns it
 });
 
 test('a model that all but touches the clamp is said, and made to keep 5 mm', async ({ page }) => {
-  await openPyramid(page);
+  await openSampleIn(page, 'Thermoform', 'Pyramid');
   await page.getByRole('button', { name: /^Advanced/ }).click();
   const shift = page.getByRole('textbox', { name: 'Shift in x' });
   await shift.fill(String((await number(page, 'Opening width')) / 2 - 52)); // the pyramid is 100 mm wide
@@ -138,7 +131,7 @@ test('a model that all but touches the clamp is said, and made to keep 5 mm', as
 });
 
 test('axe finds nothing serious while a face is chosen', async ({ page }) => {
-  await openPyramid(page);
+  await openSampleIn(page, 'Thermoform', 'Pyramid');
   await placeOnFace(page).click();
   await expect(faces(page)).toBeVisible();
   await expectAccessible(page, 'place on face');

@@ -7,7 +7,7 @@ import { inflateRawSync } from 'node:zlib';
 import { tutorials } from '../web/src/app/learn/tutorials/index';
 import { followTutorial, learnCard } from './follow_tutorial';
 import { scannedSheet } from './measured_object';
-import { backend, expect, expectAccessible, inEveryLook, openPage, test } from './page';
+import { backend, expect, expectAccessible, goToRoom, inEveryLook, openPage, test } from './page';
 
 test.skip(backend !== 'wasm', 'the mock makes reliefs only; the worker serves the same page');
 
@@ -58,7 +58,7 @@ test('the picture of a measured scan, which no step shows', async ({ page }) => 
   test.skip(!takesPictures, 'measuring a scan is a story of its own');
   test.setTimeout(600_000);
   await openPage(page);
-  await page.getByRole('link', { name: 'Evidence', exact: true }).click();
+  await goToRoom(page, 'Evidence');
   const { scan, picture, pattern } = scannedSheet();
   await page.getByLabel('Model or project file').setInputFiles([scan, picture, pattern]);
   await page.getByRole('button', { name: 'Measure the scan' }).click();
@@ -87,9 +87,9 @@ test('by keyboard, from Help, left in the middle: nothing of it is in the projec
   await expect(learnCard(page)).toContainText('Step 2 of');
 
   // Another room than the step's says the way back.
-  await page.getByRole('link', { name: 'Zippable', exact: true }).click();
+  await goToRoom(page, 'Zippable');
   await expect(learnCard(page)).toContainText('This step is in another room. Choose Relief');
-  await page.getByRole('link', { name: 'Relief', exact: true }).click();
+  await goToRoom(page, 'Relief');
   await expect(learnCard(page)).toContainText('Turn the head');
 
   // It outlives a reload, and is gone once it is left.

@@ -1,20 +1,30 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import type { Page } from '@playwright/test';
 import { readFileSync } from 'node:fs';
-import { backend, expect, expectAccessible, fileOf, openPage, strip, test } from './page';
+import {
+  backend,
+  chooseSample,
+  expect,
+  expectAccessible,
+  fileOf,
+  goToRoom,
+  makeRibbon,
+  openPage,
+  strip,
+  test,
+} from './page';
 
 test.skip(backend === 'mock', 'the mock makes reliefs only');
 
 async function openRoom(page: Page): Promise<void> {
   await openPage(page);
-  await page.getByRole('link', { name: 'Zippable', exact: true }).click();
+  await goToRoom(page, 'Zippable');
   await expect(page.getByText('A zippable starts from a closed model.')).toBeVisible();
 }
 
 async function openSample(page: Page, title: string): Promise<void> {
   await openRoom(page);
-  await page.locator('.gallery button', { hasText: title }).click();
-  await expect(strip(page, 'Preview up to date')).toBeVisible();
+  await chooseSample(page, title);
 }
 
 const seam = (page: Page) => page.locator('.flat-foot').getByText(/^Seam: /);
@@ -51,8 +61,7 @@ test('a star by mouse: windings, the same place on both sides, SVG, reload', asy
     page.getByText('Animation only: lengths are kept, but forces are not simulated.'),
   ).toBeVisible();
 
-  await page.getByRole('button', { name: 'Make the ribbon', exact: true }).click();
-  await expect(strip(page, 'Ribbon unfolded')).toBeVisible({ timeout: 150_000 });
+  await makeRibbon(page);
   const waiting = page.waitForEvent('download');
   await page.getByRole('button', { name: /^Export flat ribbon/ }).click();
   const download = await waiting;
@@ -86,8 +95,7 @@ test('a star by mouse: windings, the same place on both sides, SVG, reload', asy
 
 test('cloth zipped up, frame by frame, and what became of it', async ({ page }) => {
   await openSample(page, 'Star');
-  await page.getByRole('button', { name: 'Make the ribbon', exact: true }).click();
-  await expect(strip(page, 'Ribbon unfolded')).toBeVisible({ timeout: 150_000 });
+  await makeRibbon(page);
   await page.getByRole('radio', { name: 'Zipped' }).click();
   await page.getByRole('button', { name: 'Will it zip? Simulate cloth' }).click();
   await expect(page.getByText(/^It zips (into|up)/)).toBeVisible({ timeout: 150_000 });
@@ -226,8 +234,7 @@ test('axe finds nothing serious in the room', { tag: '@screens' }, async ({ page
   test.skip(backend === 'native', 'the worker serves the same page');
   await openRoom(page);
   await expectAccessible(page, 'empty');
-  await page.locator('.gallery button', { hasText: 'Star' }).click();
-  await expect(strip(page, 'Preview up to date')).toBeVisible();
+  await chooseSample(page, 'Star');
   await expectAccessible(page, 'preview', 'ribbon');
   await page.getByRole('radio', { name: 'Zipped' }).click();
   await expectAccessible(page, 'zipped');

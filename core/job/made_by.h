@@ -8,7 +8,7 @@
 
 namespace formwright {
 
-/// {"program", "version", "operation", "parameters", "inputs", "job"}: what differs from the defaults; for every input
+/// {"program", "version", "operation", "parameters", "inputs", "job"}: the parameters that were given; for every input
 /// its SHA-256 and file name, or its sample; and as "job" 16 digits that only the same job of the same version has.
 /// @param parameters  as the job gives them, checked
 Json made_by(const Operation& operation, const Json& parameters, const std::map<std::string, InputBlob>& inputs);

@@ -4,7 +4,16 @@
 import type { Locator, Page } from '@playwright/test';
 import { readFileSync } from 'node:fs';
 import { position, setSpeed, square, startButton } from '../machine_room';
-import { backend, expect as expectSoon, openPage, readStl, strip, test as base } from '../page';
+import {
+  backend,
+  expect as expectSoon,
+  goToRoom,
+  openPage,
+  openSampleIn,
+  readStl,
+  strip,
+  test as base,
+} from '../page';
 import type { ActionCount } from './actions';
 import { countActions } from './actions';
 import type { OwnFile } from './own_files';
@@ -100,10 +109,7 @@ test('zippable', async ({ page, counter }) => {
 });
 
 test('zipping', async ({ page, counter }) => {
-  await openPage(page);
-  await page.getByRole('link', { name: 'Zippable', exact: true }).click();
-  await page.locator('.gallery button', { hasText: 'Star' }).click();
-  await expect(strip(page, ready)).toBeVisible();
+  await openSampleIn(page, 'Zippable', 'Star');
   await makeRibbon(page);
   counter.begin();
   await page.getByRole('radio', { name: 'Zipped' }).click();
@@ -161,11 +167,11 @@ test('evidence', async ({ page, counter }) => {
 
 /** Not counted: so that the story is short, the laser is quicker than it would be. */
 async function setLaserSpeeds(page: Page): Promise<void> {
-  await page.getByRole('link', { name: 'Machines', exact: true }).click();
+  await goToRoom(page, 'Machines');
   await page.getByLabel('Model or project file').setInputFiles(square);
   await expect(strip(page, 'Job ready')).toBeVisible();
   for (const layer of ['Cut', 'Mark', 'Engrave']) await setSpeed(page, layer, '150');
-  await page.getByRole('link', { name: 'Zippable', exact: true }).click();
+  await goToRoom(page, 'Zippable');
 }
 
 /** At its own speed a practice machine takes as long as a real one: jobs run to their end in `npm run actions` and `make test-all` only. */
@@ -231,7 +237,7 @@ test('mill', async ({ page, counter }) => {
     const dialog = page.getByRole('dialog');
     await dialog.getByText(/^Set z to the stock’s top here/).click();
     await dialog.getByRole('button', { name: 'Start with the spindle on' }).click();
-    await expect(page.getByRole('contentinfo').locator('strong').getByText(done)).toBeVisible();
+    await expect(strip(page, done)).toBeVisible();
   }
   recordRow('mill', counter);
 });

@@ -6,7 +6,7 @@ import { mkdtempSync, readdirSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { crc32, deflateSync } from 'node:zlib';
-import { ballObj, expect, fileOf, openPage, strip } from '../page';
+import { ballObj, expect, fileOf, goToRoom, openPage, strip } from '../page';
 
 export type OwnFile = ReturnType<typeof fileOf>;
 
@@ -83,7 +83,7 @@ function unpacked(archive: string, folder: string): ReadonlyMap<string, Buffer> 
 /** mould.obj, setup.json and measured.csv of a virtual pyramid that was colder towards the right: made in the page, taken out of a saved project. */
 export async function measuredPyramid(page: Page): Promise<readonly OwnFile[]> {
   await openPage(page);
-  await page.getByRole('link', { name: 'Evidence', exact: true }).click();
+  await goToRoom(page, 'Evidence');
   await page.getByRole('button', { name: 'Try a virtual object' }).click();
   const dialog = page.getByRole('dialog', { name: 'Make a virtual object' });
   await dialog.getByRole('textbox', { name: 'Points', exact: true }).fill('300');

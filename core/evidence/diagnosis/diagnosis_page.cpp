@@ -5,22 +5,11 @@
 #include <cmath>
 #include <cstdio>
 
+#include "base/data/xml_text.h"
 #include "evidence/diagnosis/diagnosis_report.h"
 
 namespace formwright {
 namespace {
-
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    if (c == '&') result += "&amp;";
-    else if (c == '<') result += "&lt;";
-    else if (c == '>') result += "&gt;";
-    else if (c == '"') result += "&quot;";
-    else result += c;
-  }
-  return result;
-}
 
 /// Large figures in groups of three, small ones with a power of ten, never 2.7e+06.
 std::string figure(double value, int digits = 3) {
@@ -55,7 +44,7 @@ std::string percent_html(double share) {
 
 /// Shares are said in percent, everything else with its unit.
 std::string quantity(double value, const std::string& unit) {
-  return unit.empty() ? figure(value, 2) : figure(value, 2) + "\u2009" + escaped(unit);
+  return unit.empty() ? figure(value, 2) : figure(value, 2) + "\u2009" + xml_attribute(unit);
 }
 
 constexpr const char* style = R"(<style>
@@ -88,8 +77,8 @@ std::string error_colour(double share) {
 /// Points over the flat sheet, coloured by error, with arrows of the residual's part in the plane, lengthened.
 std::string map(const Measurement& m, const Eigen::MatrixXd& residual, const Eigen::VectorXd& weights, double largest,
                 const std::string& title, const std::string& unit) {
-  std::string svg = "<figure class=\"panel\" style=\"margin:0\"><figcaption>" + escaped(title) +
-                    "</figcaption><svg viewBox=\"-4 -4 308 334\" role=\"img\" aria-label=\"" + escaped(title) +
+  std::string svg = "<figure class=\"panel\" style=\"margin:0\"><figcaption>" + xml_attribute(title) +
+                    "</figcaption><svg viewBox=\"-4 -4 308 334\" role=\"img\" aria-label=\"" + xml_attribute(title) +
                     ": errors from 0 to " + figure(largest) + " " + unit +
                     "\"><rect x=\"0\" y=\"0\" width=\"300\" height=\"300\" fill=\"none\" stroke=\"var(--line)\"/>";
   const Eigen::Index stride = std::max<Eigen::Index>(1, residual.rows() / 900);
@@ -159,14 +148,14 @@ std::string histogram(const std::vector<double>& before, const std::vector<doubl
 std::string diagnosis_page(const DiagnosisReport& report) {
   const Diagnosis& d = report.diagnosis;
   const ForwardModel& model = report.model;
-  const std::string unit = escaped(report.unit);
+  const std::string unit = xml_attribute(report.unit);
   const auto with_unit = [&](double value) { return figure(value) + "\u2009" + unit; };
   std::string names;
   for (const Measurement& m : model.measurements()) names += (names.empty() ? "" : ", ") + m.name;
   std::string html =
       "<!doctype html><html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" content=\"width=device-width,initial-scale=1\"><title>Diagnosis of " +
-      escaped(names) + "</title>" + style + "</head><body><main><p class=\"dim\">Diagnosis of " + escaped(names) +
-      "</p><h1>" + escaped(verdict_sentence(report)) + "</h1>";
+      xml_attribute(names) + "</title>" + style + "</head><body><main><p class=\"dim\">Diagnosis of " + xml_attribute(names) +
+      "</p><h1>" + xml_attribute(verdict_sentence(report)) + "</h1>";
 
   html += "<div class=\"panel figures\">";
   const auto big = [&](const std::string& label, const std::string& value, const std::string& note) {
@@ -191,22 +180,22 @@ std::string diagnosis_page(const DiagnosisReport& report) {
     html += "<h2>What to do</h2>";
     for (const int cause : d.verdict) {
       const Cause& c = model.causes()[static_cast<std::size_t>(cause)];
-      html += "<div class=\"panel\"><b>" + escaped(c.label) + "</b><p>" + escaped(c.explanation) + "</p><p>" +
-              escaped(c.remedy) + "</p></div>";
+      html += "<div class=\"panel\"><b>" + xml_attribute(c.label) + "</b><p>" + xml_attribute(c.explanation) + "</p><p>" +
+              xml_attribute(c.remedy) + "</p></div>";
     }
   }
   for (const SeparatedPair& s : report.separations) {
-    const auto label = [&](int cause) { return escaped(model.causes()[static_cast<std::size_t>(cause)].label); };
+    const auto label = [&](int cause) { return xml_attribute(model.causes()[static_cast<std::size_t>(cause)].label); };
     html += "<div class=\"panel\"><b>Not distinguishable by these data: " + label(s.pair.cause_a) + " and " +
             label(s.pair.cause_b) + "</b><p>" +
-            (s.what.empty() ? "None of the usual further measurements would tell them apart." : escaped(s.what)) +
+            (s.what.empty() ? "None of the usual further measurements would tell them apart." : xml_attribute(s.what)) +
             "</p></div>";
   }
   html +=
       "<h2>Causes, ranked</h2><div class=\"panel scroll\"><table><tr><th>Cause</th><th>Probability</th><th class=\"n\"></th><th class=\"n\">Strength</th><th class=\"n\">95 % interval</th></tr>";
   for (const CauseFinding& f : d.causes) {
     const Cause& cause = model.causes()[static_cast<std::size_t>(f.cause)];
-    html += "<tr><td>" + escaped(cause.label) + "</td><td><div class=\"bar\"><i style=\"width:" +
+    html += "<tr><td>" + xml_attribute(cause.label) + "</td><td><div class=\"bar\"><i style=\"width:" +
             std::to_string(static_cast<int>(std::lround(100 * f.probability))) + "%\"></i></div></td><td class=\"n\">" +
             percent_html(f.probability) + "</td><td class=\"n\">" + quantity(f.strength, cause.unit) +
             "</td><td class=\"n\">" + figure(f.low, 2) + " to " + figure(f.high, 2) + "</td></tr>";
@@ -237,7 +226,7 @@ std::string diagnosis_page(const DiagnosisReport& report) {
       "<h2>Is there structure beyond noise?</h2><div class=\"panel scroll\"><table><tr><th>Object</th><th class=\"n\">Noise found</th><th class=\"n\">as stated</th><th class=\"n\">Outliers</th><th "
       "class=\"n\">Neighbours agree</th><th class=\"n\">p</th><th class=\"n\">afterwards</th><th class=\"n\">p</th></tr>";
   for (std::size_t i = 0; i < d.noise.size(); ++i)
-    html += "<tr><td>" + escaped(model.measurements()[i].name) + "</td><td class=\"n\">" + with_unit(d.noise[i].sigma) +
+    html += "<tr><td>" + xml_attribute(model.measurements()[i].name) + "</td><td class=\"n\">" + with_unit(d.noise[i].sigma) +
             "</td><td class=\"n\">" + (d.noise[i].stated_sigma > 0 ? with_unit(d.noise[i].stated_sigma) : "\u2013") +
             "</td><td class=\"n\">" + std::to_string(d.noise[i].outliers) + "</td><td class=\"n\">" +
             figure(d.structure_before[i].neighbour_correlation, 2) + "</td><td class=\"n\">" +
@@ -251,7 +240,7 @@ std::string diagnosis_page(const DiagnosisReport& report) {
       "<h2>Material</h2><div class=\"panel scroll\"><table><tr><th>Parameter</th><th class=\"n\">Calibrated</th><th class=\"n\">With the extended model</th></tr>";
   for (const int p : model.base_parameters()) {
     const ModelParameter& parameter = model.parameters()[static_cast<std::size_t>(p)];
-    html += "<tr><td>" + escaped(parameter.label) + "</td><td class=\"n\">" +
+    html += "<tr><td>" + xml_attribute(parameter.label) + "</td><td class=\"n\">" +
             quantity(parameter.value(d.base.u[p]), parameter.unit) + "</td><td class=\"n\">" +
             quantity(parameter.value(d.extended.u[p]), parameter.unit) + "</td></tr>";
   }
@@ -260,7 +249,7 @@ std::string diagnosis_page(const DiagnosisReport& report) {
       " simulations. Every cause was fitted together with the material; explanations are "
       "compared by how well they predict the data for their size, against noise and against structure that no cause makes. The errors above are for data left out of each fit: each "
       "object in 16 blocks, a quarter of them at a time.</p>";
-  for (const std::string& note : report.notes) html += "<p>" + escaped(note) + "</p>";
+  for (const std::string& note : report.notes) html += "<p>" + xml_attribute(note) + "</p>";
   return html + "</div></main></body></html>\n";
 }
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <set>
 
+#include "base/data/xml_text.h"
 #include "fabrication/sheet/cut_sheet.h"
 #include "formats/shared/text_out.h"
 
@@ -10,17 +11,6 @@ namespace formwright {
 namespace {
 
 double rounded(double mm) { return std::round(1e4 * mm) / 1e4; }
-
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    if (c == '&') result += "&amp;";
-    else if (c == '<') result += "&lt;";
-    else if (c == '>') result += "&gt;";
-    else result += c;
-  }
-  return result;
-}
 
 }  // namespace
 
@@ -55,7 +45,7 @@ Bytes write_svg(const CutSheet& sheet) {
   out << "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" version=\"1.1\" width=\""
       << width << "mm\" height=\"" << height << "mm\" viewBox=\"0 0 " << width << ' ' << height << '"';
   if (sheet.kerf_mm > 0) out << ' ' << kerf_attribute << "=\"" << rounded(sheet.kerf_mm) << '"';
-  out << ">\n<title>" << escaped(sheet.title) << "</title>\n";
+  out << ">\n<title>" << xml_text(sheet.title) << "</title>\n";
   for (int layer = 0; layer < cut_layer_count; ++layer) {
     const CutLayerStyle& style = cut_layer_styles[layer];
     out << "<g id=\"" << style.name << "\" fill=\"none\" stroke=\"" << style.colour << "\" stroke-width=\"0.1\">\n";

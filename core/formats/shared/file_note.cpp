@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <string>
 
+#include "base/data/xml_text.h"
 #include "formats/shared/byte_order.h"
 
 namespace formwright {
@@ -25,15 +26,8 @@ void after_line(Bytes& file, std::string_view beginning, const std::string& line
 }
 
 void note_svg(Bytes& file, std::string_view json) {
-  std::string escaped;
-  for (const char c : json) {
-    if (c == '&') escaped += "&amp;";
-    else if (c == '<') escaped += "&lt;";
-    else if (c == '>') escaped += "&gt;";
-    else escaped += c;
-  }
   const std::size_t end = as_text(file).rfind("</svg>");
-  if (end != std::string_view::npos) insert(file, end, "<metadata id=\"made_by\">" + escaped + "</metadata>\n");
+  if (end != std::string_view::npos) insert(file, end, "<metadata id=\"made_by\">" + xml_text(json) + "</metadata>\n");
 }
 
 /// PNG 1.2, 3.2 and 4.2.3.1: length, type, data and a CRC over type and data, big endian.

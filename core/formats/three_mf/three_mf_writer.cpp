@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <unordered_map>
 
+#include "base/data/xml_text.h"
 #include "formats/shared/colour.h"
 #include "formats/shared/media_type.h"
 #include "formats/shared/text_out.h"
@@ -9,20 +10,6 @@
 
 namespace formwright {
 namespace {
-
-std::string xml_text(std::string_view text) {
-  std::string result;
-  for (const char c : clean_text(text)) {
-    switch (c) {
-      case '<': result += "&lt;"; break;
-      case '>': result += "&gt;"; break;
-      case '&': result += "&amp;"; break;
-      case '"': result += "&quot;"; break;
-      default: result += c;
-    }
-  }
-  return result;
-}
 
 std::string hexadecimal(const Vec3& linear) {
   constexpr std::string_view digits = "0123456789ABCDEF";
@@ -66,7 +53,7 @@ class ThreeMfWriter {
         return list.empty() ? static_cast<std::size_t>(all) : list.size();
       };
       pieces.push_back("<object id=\"" + std::to_string(object.id) + "\" type=\"model\" name=\"" +
-                       xml_text(object.name) + "\">\n<mesh>\n<vertices>\n");
+                       xml_attribute(clean_text(object.name)) + "\">\n<mesh>\n<vertices>\n");
       add(format_rows(count(object.vertices, V.rows()), 56, context_, [&](TextOut& out, std::size_t i) {
         const Eigen::Index v = written(object.vertices, i);
         out << "<vertex x=\"" << static_cast<float>(V(v, 0)) << "\" y=\"" << static_cast<float>(V(v, 1)) << "\" z=\""
@@ -166,7 +153,7 @@ class ThreeMfWriter {
     if (!model_.materials.empty()) {
       out << "<basematerials id=\"2\">\n";
       for (const Material& material : model_.materials)
-        out << "<base name=\"" << xml_text(material.name.empty() ? "unnamed" : material.name) << "\" displaycolor=\""
+        out << "<base name=\"" << xml_attribute(material.name.empty() ? "unnamed" : clean_text(material.name)) << "\" displaycolor=\""
             << hexadecimal(material.diffuse) << "\"/>\n";
       out << "</basematerials>\n";
     }

@@ -154,8 +154,8 @@ std::string diagnosis_page(const DiagnosisReport& report) {
   for (const Measurement& m : model.measurements()) names += (names.empty() ? "" : ", ") + m.name;
   std::string html =
       "<!doctype html><html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" content=\"width=device-width,initial-scale=1\"><title>Diagnosis of " +
-      xml_attribute(names) + "</title>" + style + "</head><body><main><p class=\"dim\">Diagnosis of " + xml_attribute(names) +
-      "</p><h1>" + xml_attribute(verdict_sentence(report)) + "</h1>";
+      xml_attribute(names) + "</title>" + style + "</head><body><main><p class=\"dim\">Diagnosis of " +
+      xml_attribute(names) + "</p><h1>" + xml_attribute(verdict_sentence(report)) + "</h1>";
 
   html += "<div class=\"panel figures\">";
   const auto big = [&](const std::string& label, const std::string& value, const std::string& note) {
@@ -180,8 +180,8 @@ std::string diagnosis_page(const DiagnosisReport& report) {
     html += "<h2>What to do</h2>";
     for (const int cause : d.verdict) {
       const Cause& c = model.causes()[static_cast<std::size_t>(cause)];
-      html += "<div class=\"panel\"><b>" + xml_attribute(c.label) + "</b><p>" + xml_attribute(c.explanation) + "</p><p>" +
-              xml_attribute(c.remedy) + "</p></div>";
+      html += "<div class=\"panel\"><b>" + xml_attribute(c.label) + "</b><p>" + xml_attribute(c.explanation) +
+              "</p><p>" + xml_attribute(c.remedy) + "</p></div>";
     }
   }
   for (const SeparatedPair& s : report.separations) {
@@ -226,9 +226,10 @@ std::string diagnosis_page(const DiagnosisReport& report) {
       "<h2>Is there structure beyond noise?</h2><div class=\"panel scroll\"><table><tr><th>Object</th><th class=\"n\">Noise found</th><th class=\"n\">as stated</th><th class=\"n\">Outliers</th><th "
       "class=\"n\">Neighbours agree</th><th class=\"n\">p</th><th class=\"n\">afterwards</th><th class=\"n\">p</th></tr>";
   for (std::size_t i = 0; i < d.noise.size(); ++i)
-    html += "<tr><td>" + xml_attribute(model.measurements()[i].name) + "</td><td class=\"n\">" + with_unit(d.noise[i].sigma) +
-            "</td><td class=\"n\">" + (d.noise[i].stated_sigma > 0 ? with_unit(d.noise[i].stated_sigma) : "\u2013") +
-            "</td><td class=\"n\">" + std::to_string(d.noise[i].outliers) + "</td><td class=\"n\">" +
+    html += "<tr><td>" + xml_attribute(model.measurements()[i].name) + "</td><td class=\"n\">" +
+            with_unit(d.noise[i].sigma) + "</td><td class=\"n\">" +
+            (d.noise[i].stated_sigma > 0 ? with_unit(d.noise[i].stated_sigma) : "\u2013") + "</td><td class=\"n\">" +
+            std::to_string(d.noise[i].outliers) + "</td><td class=\"n\">" +
             figure(d.structure_before[i].neighbour_correlation, 2) + "</td><td class=\"n\">" +
             figure(d.structure_before[i].p_value, 2) + "</td><td class=\"n\">" +
             figure(d.structure_after[i].neighbour_correlation, 2) + "</td><td class=\"n\">" +

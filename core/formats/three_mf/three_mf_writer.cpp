@@ -153,8 +153,8 @@ class ThreeMfWriter {
     if (!model_.materials.empty()) {
       out << "<basematerials id=\"2\">\n";
       for (const Material& material : model_.materials)
-        out << "<base name=\"" << xml_attribute(material.name.empty() ? "unnamed" : clean_text(material.name)) << "\" displaycolor=\""
-            << hexadecimal(material.diffuse) << "\"/>\n";
+        out << "<base name=\"" << xml_attribute(material.name.empty() ? "unnamed" : clean_text(material.name))
+            << "\" displaycolor=\"" << hexadecimal(material.diffuse) << "\"/>\n";
       out << "</basematerials>\n";
     }
     if (coloured) {

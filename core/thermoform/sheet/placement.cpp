@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "thermoform/sheet/placement.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "base/format.h"
@@ -11,7 +13,7 @@
 namespace formwright {
 namespace {
 
-constexpr double min_size_mm = 10, usual_size_mm = 100;
+constexpr double min_size_mm = 10, usual_size_mm = 100, margin_mm = 5;
 
 /// A rotation that takes the model's up to z, and, for the up of most files (y), the model's front (+z) to -y, towards
 /// whoever stands before the machine.
@@ -28,6 +30,15 @@ Eigen::Matrix3d standing(const std::array<double, 3>& up_option) {
   rotation.row(1) = -front.transpose();
   rotation.row(2) = up.transpose();
   return rotation;
+}
+
+/// What leaves the margin to the clamp on every side. A clamp that is narrower than two margins leaves a tenth of its
+/// opening.
+double scale_that_fits(const Vec3& size_mm, const Vec2& opening_mm) {
+  double scale = std::numeric_limits<double>::infinity();
+  for (const int axis : {0, 1})
+    scale = std::min(scale, std::max(opening_mm[axis] - 2 * margin_mm, 0.1 * opening_mm[axis]) / size_mm[axis]);
+  return scale;
 }
 
 std::string millimetres(double value) { return with_digits(value, 3) + " mm"; }
@@ -57,11 +68,11 @@ Placement place(const TriangleMesh& mesh, const PlacementOptions& options, const
     throw Error(ErrorCode::invalid_input, "mould", "The model has no extent: choose another file.");
   if (options.size_mm) {
     placement.scale = *options.size_mm / extent;
-  } else if (extent < min_size_mm || straight.size().x() > opening_mm.x() || straight.size().y() > opening_mm.y()) {
-    placement.scale = usual_size_mm / extent;
+  } else if (const double fits = scale_that_fits(straight.size(), opening_mm); extent < min_size_mm || fits < 1) {
+    placement.scale = std::min(usual_size_mm / extent, fits);
     placement.notes.push_back("The file's own size, " + millimetres(extent) +
-                              ", does not suit the machine: the longest side is now " + millimetres(usual_size_mm) +
-                              ".");
+                              ", does not suit the machine: the longest side is now " +
+                              millimetres(placement.scale * extent) + ".");
   }
   placement.linear = placement.scale * turn * upright;
   const Vec3 centre = turned.centre() * placement.scale;

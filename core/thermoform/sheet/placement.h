@@ -26,7 +26,7 @@ struct PlacementOptions {
   static constexpr auto parameters = std::tuple{
       parameter(
           "size_mm", &PlacementOptions::size_mm, "Size", unit::mm, 1, 2000,
-          "Longest side of the model as it stands on the plate, including any part lowered into the plate. Automatic: the size in the file if that is between 10 mm and the clamp opening, otherwise 100 mm.")
+          "Longest side of the model as it stands on the plate, including any part lowered into the plate. Automatic: the size in the file if that is at least 10 mm and leaves 5 mm to the clamp; otherwise 100 mm, or less where the clamp is narrower.")
           .group("Placement")
           .slider(20, 220),
       parameter(

@@ -8,7 +8,8 @@ import type { ReportNote } from '../../shared/session/report_notes';
 import { notesOf } from '../../shared/session/report_notes';
 import { problemNote, repairsNote } from '../../shared/panels/room_notes';
 import { fitting, roomIn } from './fit';
-import { boxOf, clearance_mm, margin_mm, placed } from './placement';
+import { boxOf, clearance_mm, placed } from './placement';
+import { margin_mm } from './stand/place_model';
 import type { ThermoformSession } from './thermoform_session';
 import { view } from './views';
 

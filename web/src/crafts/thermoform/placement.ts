@@ -3,7 +3,7 @@
 // core decides; while a parameter is dragged, what it said last is carried on to the new values here.
 import type { JsonObject, Report } from '../../jobs/contract';
 import type { Placed } from './stand/place_model';
-import { placeModel } from './stand/place_model';
+import { margin_mm, placeModel } from './stand/place_model';
 
 /** 4 x 4, row by row: from the model's coordinates to the machine's. */
 export type Placement = readonly number[];
@@ -50,9 +50,6 @@ export function boxOf(positions: ArrayLike<number>): Box {
   }
   return { low, high };
 }
-
-/** Between the model and the clamp's edge. */
-export const margin_mm = 5;
 
 /** By how much a model must shrink to stand in the middle of the opening with a margin around it; 1: not at all. */
 export function shareThatFits({ low, high }: Box, opening_mm: readonly [number, number]): number {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { describe, expect, it } from 'vitest';
 import { fitting } from './fit';
-import { boxOf, clearance_mm, margin_mm, placed, shareThatFits } from './placement';
-import { placeModel } from './stand/place_model';
+import { boxOf, clearance_mm, placed, shareThatFits } from './placement';
+import { margin_mm, placeModel } from './stand/place_model';
 
 /** A bar 2 long. */
 const bar = [-1, -0.1, 0, 1, -0.1, 0, 1, 0.1, 0, -1, 0.1, 0.3];

@@ -76,6 +76,20 @@ describe('standing a model otherwise', () => {
     expect(placeModel({ ...standard, up: [0, 0, 1] }, tall)?.scale).toBeCloseTo(100 / 185, 9);
   });
 
+  it('chooses a size that leaves a margin to the clamp', () => {
+    const cube = (side: number) => Float32Array.from([0, 0, 0, side, 0, 0, 0, side, 0, 0, 0, side]);
+    const size_mm = (side: number, opening_mm: number) =>
+      side *
+      (placeModel(
+        { ...standard, clamp_opening_x_mm: opening_mm, clamp_opening_y_mm: 300 },
+        cube(side),
+      )?.scale ?? 0);
+    expect(size_mm(190, 200)).toBeCloseTo(190, 4);
+    expect(size_mm(191, 200)).toBeCloseTo(100, 4);
+    expect(size_mm(1, 80)).toBeCloseTo(70, 4);
+    expect(size_mm(40, 8)).toBeCloseTo(0.8, 4);
+  });
+
   it('refuses what the core refuses', () => {
     expect(placeModel({ ...standard, up: [0, 0, 0] }, corners)).toBeNull();
     expect(placeModel(standard, [1, 1, 1, 1, 1, 1])).toBeNull();

@@ -5,7 +5,10 @@ import type { JsonObject } from '../../../jobs/contract';
 import type { Rotation, Stance, Vector } from './stance';
 import { rotationOf, stanceOf, standing } from './stance';
 
-/** As the core's automatic size: a file's own size above 10 mm that fits the opening, else 100 mm. */
+/** Between the model and the clamp's edge. */
+export const margin_mm = 5;
+
+/** As the core's automatic size: a file's own size above 10 mm that leaves the margin, else 100 mm or what leaves it. */
 const automatic = { min_mm: 10, usual_mm: 100 } as const;
 
 export interface Placed {
@@ -90,8 +93,12 @@ export function placeModel(values: JsonObject, positions: ArrayLike<number>): Pl
 function scaleOf(values: JsonObject, extent: number, [x, y]: Vector): number {
   const size_mm = values['size_mm'] ?? null;
   if (size_mm !== null) return Number(size_mm) / extent;
-  const [openingX, openingY] = [number(values, 'clamp_opening_x_mm'), number(values, 'clamp_opening_y_mm')];
-  return extent < automatic.min_mm || x > openingX || y > openingY ? automatic.usual_mm / extent : 1;
+  const room = (name: string) => {
+    const opening_mm = number(values, name);
+    return Math.max(opening_mm - 2 * margin_mm, 0.1 * opening_mm);
+  };
+  const fits = Math.min(room('clamp_opening_x_mm') / x, room('clamp_opening_y_mm') / y);
+  return extent < automatic.min_mm || fits < 1 ? Math.min(automatic.usual_mm / extent, fits) : 1;
 }
 
 /** The parameters that stand a model otherwise and keep it as large as it is. An automatic size stays automatic where

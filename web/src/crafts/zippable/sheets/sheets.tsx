@@ -17,6 +17,24 @@ import './sheets.css';
 /** Plans asked for already: what failed is not tried again before something changes. */
 const tried = new Set<string>();
 
+/** The one that this view asked for and that is being made. */
+let inWork: string | null = null;
+/** While a value is typed or dragged, the plan in work for the one before is not given up at once. */
+const settled_ms = 300;
+
+const planKey = ({ designFile, sheets }: ZippableSession): string =>
+  JSON.stringify([designFile.value?.blob, sheets.parameters.value]);
+
+/** Where the values change meanwhile, the next plan ends this one, which may be asked for again. */
+async function makePlan(session: ZippableSession): Promise<void> {
+  const key = planKey(session);
+  tried.add(key);
+  inWork = key;
+  const made = await planBytes(session, 'plan.svg', 'plan');
+  if (made === null && planKey(session) !== key) tried.delete(key);
+  if (inWork === key) inWork = null;
+}
+
 export interface SheetsProps {
   readonly session: ZippableSession;
   readonly drawing: 'plan.svg' | 'rig.svg';
@@ -29,10 +47,10 @@ export function Sheets({ session, drawing, onSendToMachine }: SheetsProps) {
   const parameters = session.sheets.parameters.value;
   const idle = session.activity.value.kind === 'idle';
   useEffect(() => {
-    const key = JSON.stringify([design?.blob, parameters]);
-    if (design === null || plan !== null || !idle || tried.has(key)) return;
-    tried.add(key);
-    void planBytes(session, 'plan.svg', 'plan');
+    if (design === null || plan !== null || tried.has(planKey(session))) return;
+    if (!idle && inWork === null) return;
+    const soon = setTimeout(() => void makePlan(session), idle ? 0 : settled_ms);
+    return () => clearTimeout(soon);
   }, [design, plan, parameters, idle]);
   const rig = drawing === 'rig.svg';
   const words = rig ? rigWords(session) : planWords(session);

@@ -8,7 +8,7 @@ import { CraftCommands, emptyCraft, inForce, known, subjectOf } from '../../shar
 import { machineProfile, profileInputs, withProfile } from '../../shared/session/machine_profile';
 import type { Product } from '../../shared/session/products';
 import { addProduct, productOf } from '../../shared/session/products';
-import { formedSheet, offered, printing, simulate, thermoform } from './thermoform_document';
+import { formedSheet, hasMaterials, offered, printing, simulate, thermoform } from './thermoform_document';
 
 const number = (value: number): ParameterSchema => ({ type: 'number', default: value });
 const operation = (name: string, properties: Record<string, ParameterSchema>): Operation => ({
@@ -126,5 +126,22 @@ describe('the thermoform in a project', () => {
     const both = thermoform.setParameters(all, { vacuum_kpa: 50 }, 'Set').apply(before);
     expect(relief.of(both)).toEqual(relief.of(before));
     expect(thermoform.of(both).parameters).toEqual({ vacuum_kpa: 50 });
+  });
+});
+
+describe('the colours of a model', () => {
+  const withFiles = (...names: string[]) =>
+    hasMaterials({
+      kind: 'file',
+      file_name: 'cat.obj',
+      file: blob('a'),
+      companions: names.map((file_name) => ({ file_name, file: blob('b') })),
+    });
+
+  it('are known where a file of materials came with it', () => {
+    expect(withFiles('Cat.MTL', 'fur.png')).toBe(true);
+    expect(withFiles('fur.png')).toBe(false);
+    expect(withFiles()).toBe(false);
+    expect(hasMaterials(model.source)).toBe(false);
   });
 });

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Thermoforming's part of a project: formed sheets as results, and what was made of them: prints, moulds.
 import type { Catalog, JsonObject, Operation } from '../../jobs/contract';
-import type { CraftDocument, CraftResult, Subject } from '../../shared/session/craft_document';
+import type { CraftDocument, CraftResult, Source, Subject } from '../../shared/session/craft_document';
 import { CraftCommands, emptyCraft, sameRequest } from '../../shared/session/craft_document';
 import type { RoomWithProducts } from '../../shared/session/products';
 import { offeredTogether } from '../../shared/session/products';
@@ -32,3 +32,8 @@ export function formedSheet(
   const request = { mesh: subject.key, parameters };
   return results.find((result) => sameRequest(result, request)) ?? null;
 }
+
+/** Whether a file of materials came with the model, which says the colours of its parts. */
+export const hasMaterials = (source: Source): boolean =>
+  source.kind === 'file' &&
+  (source.companions ?? []).some(({ file_name }) => file_name.toLowerCase().endsWith('.mtl'));

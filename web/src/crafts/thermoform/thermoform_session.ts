@@ -22,7 +22,15 @@ import { RoomSession } from '../../shared/session/room_session';
 import type { Services } from '../../shared/session/services';
 import { endOf, momentAt, phaseAt, phasesOf } from './film';
 import { carriedOn, placementOf } from './placement';
-import { formedSheet, moulding, offered, printing, simulate, thermoform } from './thermoform_document';
+import {
+  formedSheet,
+  hasMaterials,
+  moulding,
+  offered,
+  printing,
+  simulate,
+  thermoform,
+} from './thermoform_document';
 import type { ThermoformDocument } from './thermoform_document';
 
 export interface Formed extends ShownWork {
@@ -59,8 +67,10 @@ export class ThermoformSession extends RoomSession<ThermoformDocument> {
   readonly picture = signal<ImageBitmap | null>(null);
   /** Whether the model's file says which colours it has. */
   readonly hasColours = computed(() => {
-    const colours = this.model.original.value?.mesh.colours;
-    return Boolean(colours ?? this.document.value.model?.picture);
+    const { model } = this.document.value;
+    if (model === null) return false;
+    const ofVertices = this.model.original.value?.mesh.colours;
+    return Boolean(ofVertices ?? model.picture) || hasMaterials(model.source);
   });
   readonly hasWork = this.model.isThere;
   readonly subject = this.model.subject;

@@ -26,8 +26,18 @@ Eigen::VectorXd to_u(const ViewFrame& frame, const Eigen::VectorXd& z) {
 
 }  // namespace
 
-Eigen::VectorXd linear_compression(const ViewFrame& frame, double thickness, const std::vector<char>& bounded) {
-  return to_u(frame, fitted_to_slab(frame.P.col(2), thickness, bounded));
+Eigen::VectorXd linear_compression(const ViewFrame& frame, const DepthBounds& bounds) {
+  double low = INFINITY, high = -INFINITY;
+  for (Eigen::Index i = 0; i < frame.P.rows(); ++i)
+    if (bounds.bounded[static_cast<std::size_t>(i)]) {
+      low = std::min(low, frame.P(i, 2));
+      high = std::max(high, frame.P(i, 2));
+    }
+  Eigen::VectorXd z = bounds.farthest;
+  if (high > low)
+    for (Eigen::Index i = 0; i < z.size(); ++i)
+      z[i] += (frame.P(i, 2) - high) * ((bounds.farthest[i] - bounds.nearest[i]) / (high - low));
+  return to_u(frame, z);
 }
 
 Eigen::VectorXd gradient_domain_compression(const ViewFrame& frame, const Triangles& F, const Visibility& visibility,

@@ -2,14 +2,15 @@
 #pragma once
 // What a maker would get without the optimisation, in the same slab: to show beside, and to be honest.
 #include "base/context.h"
+#include "relief/base/depth_bounds.h"
 #include "relief/view_frame.h"
 #include "relief/visibility.h"
 
 namespace formwright {
 
-/// Depth compressed linearly along the rays so that the bounded vertices just fill -thickness <= z <= 0.
-/// `bounded` (n): 1 where a bound applies; the others follow the same line. Lengths are normalised.
-Eigen::VectorXd linear_compression(const ViewFrame& frame, double thickness, const std::vector<char>& bounded);
+/// Depth compressed linearly along the rays so that the bounded vertices just fill their bounds: the nearest of them comes to its
+/// nearest depth, the farthest to its farthest. The others follow the same line. Lengths are normalised.
+Eigen::VectorXd linear_compression(const ViewFrame& frame, const DepthBounds& bounds);
 
 struct GradientCompressionOptions {
   double steepest_slope = 8;  // depth per length in the picture; steeper faces are silhouettes and count as flat

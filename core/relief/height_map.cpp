@@ -4,10 +4,15 @@
 #include <algorithm>
 #include <cmath>
 
-namespace formwright {
+#include "base/parallel.h"
 
-HeightMap make_height_map(const Positions& moved, const Triangles& F, double size_mm, PlateSize plate, double pixel_mm,
-                          double top_mm, Context& context) {
+namespace formwright {
+namespace {
+
+constexpr std::size_t rows_a_chunk = 16;
+
+/// On the plate, all heights 0.
+HeightMap empty_map(PlateSize plate, double pixel_mm) {
   HeightMap map;
   const double nodes_x = std::ceil(plate.width_mm / pixel_mm - 1e-9) + 1,
                nodes_y = std::ceil(plate.height_mm / pixel_mm - 1e-9) + 1;
@@ -20,17 +25,24 @@ HeightMap make_height_map(const Positions& moved, const Triangles& F, double siz
   map.pitch_x_mm = plate.width_mm / (map.columns - 1);
   map.pitch_y_mm = plate.height_mm / (map.rows - 1);
   map.height_mm.assign(static_cast<std::size_t>(map.columns) * static_cast<std::size_t>(map.rows), 0.0f);
+  return map;
+}
 
-  // Columns of G: position on the grid in nodes, height in mm.
+/// Columns: position on the grid in nodes, height in mm.
+Positions on_grid(const Positions& moved, const HeightMap& map, double size_mm) {
   Positions G(moved.rows(), 3);
-  G.col(0) = (moved.col(0).array() * size_mm + 0.5 * plate.width_mm) / map.pitch_x_mm;
-  G.col(1) = (moved.col(1).array() * size_mm + 0.5 * plate.height_mm) / map.pitch_y_mm;
+  G.col(0) = (moved.col(0).array() * size_mm + 0.5 * map.width_mm()) / map.pitch_x_mm;
+  G.col(1) = (moved.col(1).array() * size_mm + 0.5 * map.depth_mm()) / map.pitch_y_mm;
   G.col(2) = -size_mm * moved.col(2).array();
+  return G;
+}
 
+/// Raises the map's nodes to the triangles over them; heights are first limited to [lowest, highest].
+void raise_to_envelope(HeightMap& map, const Positions& G, const Triangles& F, double lowest, double highest,
+                       Context& context) {
   for (Eigen::Index f = 0; f < F.rows(); ++f) {
     if (f % 65536 == 0) context.check_cancelled();
     const Vec3 a = G.row(F(f, 0)).transpose(), b = G.row(F(f, 1)).transpose(), c = G.row(F(f, 2)).transpose();
-    if (std::max({a.z(), b.z(), c.z()}) <= 0) continue;
     const double doubled = (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
     if (doubled == 0) continue;  // edge-on: its neighbours cover the same nodes
     const int x0 = std::max(0, static_cast<int>(std::ceil(std::min({a.x(), b.x(), c.x()}) - 1e-9)));
@@ -43,16 +55,89 @@ HeightMap make_height_map(const Positions& moved, const Triangles& F, double siz
         const double wc = ((b.x() - a.x()) * (y - a.y()) - (b.y() - a.y()) * (x - a.x())) / doubled;
         const double wa = 1 - wb - wc;
         if (wa < -1e-9 || wb < -1e-9 || wc < -1e-9) continue;
-        const double height = std::clamp(wa * a.z() + wb * b.z() + wc * c.z(), 0.0, top_mm);
+        const double height = std::clamp(wa * a.z() + wb * b.z() + wc * c.z(), lowest, highest);
         map.at(y, x) = std::max(map.at(y, x), static_cast<float>(height));
       }
   }
+}
+
+/// Heights of the base at the map's nodes, mm; NaN beyond its edge.
+std::vector<float> base_heights(const HeightMap& map, const BaseSurface& base, double size_mm, Context& context) {
+  std::vector<float> heights(map.height_mm.size());
+  parallel_for(static_cast<std::size_t>(map.rows), rows_a_chunk, [&](std::size_t begin, std::size_t end) {
+    context.check_cancelled();
+    for (std::size_t row = begin; row < end; ++row)
+      for (int column = 0; column < map.columns; ++column) {
+        const double x_mm = column * map.pitch_x_mm - 0.5 * map.width_mm(),
+                     y_mm = static_cast<double>(row) * map.pitch_y_mm - 0.5 * map.depth_mm();
+        const std::optional<double> depth = base.depth_at(x_mm / size_mm, y_mm / size_mm);
+        heights[row * static_cast<std::size_t>(map.columns) + static_cast<std::size_t>(column)] =
+            depth ? static_cast<float>(-size_mm * *depth) : NAN;
+      }
+  });
+  return heights;
+}
+
+/// The map with the envelope at the covered nodes, -infinity elsewhere, and its limits.
+HeightMap envelope_over(const Positions& moved, const Triangles& F, double size_mm, PlateSize plate, double pixel_mm,
+                        const AllowedSpace& space, Context& context) {
+  HeightMap map = empty_map(plate, pixel_mm);
+  const auto range = space.base.depth_range(0.5 * plate.width_mm / size_mm, 0.5 * plate.height_mm / size_mm);
+  const auto [least, largest] = range.value_or(std::pair{0.0, 0.0});
+  map.floor_mm = -size_mm * largest - space.below_mm;
+  map.top_mm = -size_mm * least + space.above_mm;
+  std::ranges::fill(map.height_mm, -INFINITY);
+  raise_to_envelope(map, on_grid(moved, map, size_mm), F, map.floor_mm, map.top_mm, context);
+  return map;
+}
+
+}  // namespace
+
+HeightMap make_height_map(const Positions& moved, const Triangles& F, double size_mm, PlateSize plate, double pixel_mm,
+                          double top_mm, Context& context) {
+  HeightMap map = empty_map(plate, pixel_mm);
+  map.top_mm = top_mm;
+  const Positions G = on_grid(moved, map, size_mm);
+  raise_to_envelope(map, G, F, 0, top_mm, context);
   for (Eigen::Index i = 0; i < G.rows(); ++i)
     if (G(i, 2) > top_mm * (1 - 1e-6)) {
       const int x = std::clamp(static_cast<int>(std::lround(G(i, 0))), 0, map.columns - 1);
       const int y = std::clamp(static_cast<int>(std::lround(G(i, 1))), 0, map.rows - 1);
       map.at(y, x) = static_cast<float>(top_mm);
     }
+  return map;
+}
+
+HeightMap make_height_map(const Positions& moved, const Triangles& F, double size_mm, PlateSize plate, double pixel_mm,
+                          const AllowedSpace& space, Context& context) {
+  if (space.base.is_flat() && space.below_mm == 0)
+    return make_height_map(moved, F, size_mm, plate, pixel_mm, space.above_mm, context);
+  HeightMap map = envelope_over(moved, F, size_mm, plate, pixel_mm, space, context);
+  const std::vector<float> base = base_heights(map, space.base, size_mm, context);
+  const auto floor = static_cast<float>(map.floor_mm);
+  for (std::size_t i = 0; i < base.size(); ++i) {
+    float& height = map.height_mm[i];
+    const bool covered = !std::isinf(height);
+    if (std::isnan(base[i])) height = covered ? height : floor;
+    else if (!covered) height = base[i];
+    else
+      height = std::clamp(height, base[i] - static_cast<float>(space.below_mm),
+                          base[i] + static_cast<float>(space.above_mm));
+    height = std::max(height, floor);
+  }
+  return map;
+}
+
+HeightMap make_bed_map(const Positions& moved, const Triangles& F, double size_mm, PlateSize plate, double pixel_mm,
+                       const AllowedSpace& space, Context& context) {
+  HeightMap map = envelope_over(moved, F, size_mm, plate, pixel_mm, space, context);
+  const std::vector<float> base = base_heights(map, space.base, size_mm, context);
+  const auto floor = static_cast<float>(map.floor_mm);
+  for (std::size_t i = 0; i < base.size(); ++i) {
+    const bool covered = !std::isinf(map.height_mm[i]);
+    const float height = std::isnan(base[i]) ? floor : base[i];
+    map.height_mm[i] = std::max(floor, covered ? height - static_cast<float>(space.below_mm) : height);
+  }
   return map;
 }
 

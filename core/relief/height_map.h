@@ -4,15 +4,17 @@
 #include <vector>
 
 #include "base/context.h"
+#include "relief/base/base_surface.h"
 #include "relief/view_frame.h"
 
 namespace formwright {
 
-/// Heights over the plate's front at the nodes of a regular grid; node (0, 0) is the lower left corner.
+/// Heights over the plane of the plate's front at the nodes of a regular grid; node (0, 0) is the lower left corner.
 struct HeightMap {
   int columns = 0, rows = 0;
   double pitch_x_mm = 0, pitch_y_mm = 0;  // the grid spans the plate exactly
-  std::vector<float> height_mm;           // rows * columns, row 0 at the bottom; 0 on the bare plate
+  std::vector<float> height_mm;           // rows * columns, row 0 at the bottom; 0 on a bare flat plate
+  double floor_mm = 0, top_mm = 0;        // the least and largest height that the base and its bounds allow anywhere
 
   double width_mm() const { return pitch_x_mm * (columns - 1); }
   double depth_mm() const { return pitch_y_mm * (rows - 1); }
@@ -37,8 +39,23 @@ struct PlateSize {
 HeightMap make_height_map(const Positions& moved, const Triangles& F, double size_mm, PlateSize plate, double pixel_mm,
                           double top_mm, Context& context);
 
-/// A watertight solid: the height field on a plate `plate_mm` thick, x right, y up, z towards the viewer, lower
-/// left corner of the plate's back at the origin. Flat and smooth parts are covered by larger triangles: a
+/// Where a relief may be: from `above_mm` before its base to `below_mm` behind it, along the plate's normal.
+struct AllowedSpace {
+  const BaseSurface& base;
+  double above_mm, below_mm;
+};
+
+/// The same over any base: the envelope where the mesh covers a node, kept within the allowed space there, and the
+/// base elsewhere. Nodes that the base does not reach are on the floor.
+HeightMap make_height_map(const Positions& moved, const Triangles& F, double size_mm, PlateSize plate, double pixel_mm,
+                          const AllowedSpace& space, Context& context);
+
+/// The base alone, as deep as the relief may be carved where the mesh covers it: what a picture shows behind the mesh.
+HeightMap make_bed_map(const Positions& moved, const Triangles& F, double size_mm, PlateSize plate, double pixel_mm,
+                       const AllowedSpace& space, Context& context);
+
+/// A watertight solid: the height field on a plate `plate_mm` thick below its floor, x right, y up, z towards the viewer,
+/// lower left corner of the plate's back at the origin. Flat and smooth parts are covered by larger triangles: a
 /// right-triangulated irregular network (Evans, Kirkpatrick, Townsend 2001) within `tolerance_mm` of every node.
 TriangleMesh make_solid(const HeightMap& map, double plate_mm, double tolerance_mm, Context& context);
 

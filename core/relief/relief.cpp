@@ -8,6 +8,7 @@
 #include "geometry/mesh/adjacency.h"
 #include "geometry/queries/ray_caster.h"
 #include "relief/appearance_energy.h"
+#include "relief/base/depth_bounds.h"
 #include "relief/baselines.h"
 
 namespace formwright {
@@ -17,32 +18,25 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 // About 3.9 kB a vertex: 6 GB natively, and what fits into the 4 GB that WASM can have.
 constexpr int max_vertices = sizeof(void*) > 4 ? 1'500'000 : 600'000;
 
-struct SlabBounds {
-  BoundedQpConstraints constraints;  // without rows
-  std::vector<char> bounded;
-};
-
-/// -thickness <= z <= 0 for every bounded vertex, up to the common scale mu = 1 + kappa m of eq. (3.11):
+/// nearest <= z <= farthest for every bounded vertex, up to the common scale mu = 1 + kappa m of eq. (3.11):
 ///   1 + kappa u in mu [1 + kappa l, 1 + kappa h]   <=>   l + (1 + kappa l) m <= u <= h + (1 + kappa h) m.
-SlabBounds slab_bounds(const ViewFrame& frame, const Visibility& visibility, BoundedVertices which, double thickness) {
+/// Without rows.
+BoundedQpConstraints constraints_of(const ViewFrame& frame, const DepthBounds& bounds) {
   const Eigen::Index n = frame.P.rows();
-  SlabBounds slab;
-  BoundedQpConstraints& c = slab.constraints;
+  BoundedQpConstraints c;
   c.lower = Eigen::VectorXd::Constant(n, -infinity);
   c.upper = Eigen::VectorXd::Constant(n, infinity);
   c.lower_slope = c.upper_slope = Eigen::VectorXd::Ones(n);
   c.group.assign(static_cast<std::size_t>(n), 0);
   c.gauge = Eigen::VectorXd::Constant(n, 1.0 / static_cast<double>(n));
-  slab.bounded.assign(static_cast<std::size_t>(n), 0);
   for (int i = 0; i < n; ++i) {
-    if (which == BoundedVertices::visible && !visibility.vertex[static_cast<std::size_t>(i)]) continue;
-    slab.bounded[static_cast<std::size_t>(i)] = 1;
-    c.lower[i] = frame.u_for_depth(i, -thickness);
-    c.upper[i] = frame.u_for_depth(i, 0);
+    if (!bounds.bounded[static_cast<std::size_t>(i)]) continue;
+    c.lower[i] = frame.u_for_depth(i, bounds.nearest[i]);
+    c.upper[i] = frame.u_for_depth(i, bounds.farthest[i]);
     c.lower_slope[i] = 1 + frame.kappa * c.lower[i];
     c.upper_slope[i] = 1 + frame.kappa * c.upper[i];
   }
-  return slab;
+  return c;
 }
 
 /// Divides the common scale out again, eq. (3.11) at mu = 1. Where the bounds leave it free, the relief is put
@@ -127,34 +121,30 @@ ReliefSolver::ReliefSolver(const TriangleMesh& mesh, const ReliefOptions& option
   seconds_factorise_ = watch.seconds();
 }
 
-Relief ReliefSolver::solve(const ReliefOptions& options, Context& context) {
-  const double thickness = options.thickness_mm / options.width_mm;
-  if (frame_.kappa * thickness >= 0.5)
-    throw Error(
-        ErrorCode::invalid_input, "thickness_mm",
-        "The relief would extend more than half-way to the viewpoint: choose a smaller thickness or a larger viewing distance.");
-  SlabBounds slab = slab_bounds(frame_, visibility_, options.bounded_vertices, thickness);
+Relief ReliefSolver::solve(const ReliefOptions& options, const BaseSurface& base, Context& context) {
+  const DepthBounds bounds = depth_bounds(frame_, visibility_, base, options, context);
+  BoundedQpConstraints constraints = constraints_of(frame_, bounds);
   // Lent, not copied: at 300k vertices the rows are tens of megabytes.
-  slab.constraints.rows.swap(order_rows_);
+  constraints.rows.swap(order_rows_);
   struct Return {
     std::vector<InequalityRow>&from, &to;
     ~Return() { to.swap(from); }
-  } give_back{slab.constraints.rows, order_rows_};
+  } give_back{constraints.rows, order_rows_};
 
   Relief relief;
   BoundedQpOptions qp_options;
   qp_options.method = options.method;
-  qp_options.violation_tolerance = 1e-9 * thickness;
+  qp_options.violation_tolerance = 1e-9 * (options.thickness_mm + options.carve_depth_mm) / options.width_mm;
   {
     const auto span = context.span(0, 0.9, "Fitting into the thickness");
-    relief.qp = qp_.solve(slab.constraints, qp_options, context);
+    relief.qp = qp_.solve(constraints, qp_options, context);
   }
   context.progress(0.9, "Comparing normals");
-  relief.u = settled(frame_, slab.constraints, relief.qp);
+  relief.u = settled(frame_, constraints, relief.qp);
   relief.moved = frame_.moved(relief.u);
   relief.energy = (*energy_)(relief.u);
   relief.normal_error = normal_error(frame_, F_, visibility_, relief.moved);
-  const Eigen::VectorXd linear = linear_compression(frame_, thickness, slab.bounded);
+  const Eigen::VectorXd linear = linear_compression(frame_, bounds);
   relief.energy_linear = (*energy_)(linear);
   relief.normal_error_linear = normal_error(frame_, F_, visibility_, frame_.moved(linear));
 
@@ -162,18 +152,19 @@ Relief ReliefSolver::solve(const ReliefOptions& options, Context& context) {
   relief.lambda_mm = size * ray_lengths(frame_, relief.u);
   relief.lambda_min_mm = Eigen::VectorXd::Zero(relief.u.size());
   relief.lambda_max_mm = Eigen::VectorXd::Constant(relief.u.size(), infinity);
-  const Eigen::VectorXd lowest = ray_lengths(frame_, slab.constraints.lower),
-                        highest = ray_lengths(frame_, slab.constraints.upper);
+  const Eigen::VectorXd lowest = ray_lengths(frame_, constraints.lower),
+                        highest = ray_lengths(frame_, constraints.upper);
   for (Eigen::Index i = 0; i < relief.u.size(); ++i) {
-    if (!slab.bounded[static_cast<std::size_t>(i)]) continue;
+    if (!bounds.bounded[static_cast<std::size_t>(i)]) continue;
     relief.lambda_min_mm[i] = size * lowest[i];
     relief.lambda_max_mm[i] = size * highest[i];
     relief.bound_violation_max_mm =
         std::max({relief.bound_violation_max_mm, relief.lambda_min_mm[i] - relief.lambda_mm[i],
                   relief.lambda_mm[i] - relief.lambda_max_mm[i]});
   }
-  relief.order_rows = static_cast<int>(slab.constraints.rows.size());
-  relief.order_violation_max_mm = size * order_violation(slab.constraints.rows, relief.u);
+  relief.vertices_beyond_base = bounds.missed;
+  relief.order_rows = static_cast<int>(constraints.rows.size());
+  relief.order_violation_max_mm = size * order_violation(constraints.rows, relief.u);
   if (!relief.u.allFinite())
     throw Error(ErrorCode::could_not_solve, "",
                 "The relief did not converge on this model: simplify or repair the model and try again.");

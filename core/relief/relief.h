@@ -8,6 +8,7 @@
 #include "base/context.h"
 #include "geometry/mesh/triangle_mesh.h"
 #include "numerics/qp/bounded_qp.h"
+#include "relief/base/base_surface.h"
 #include "relief/normal_error.h"
 #include "relief/relief_options.h"
 #include "relief/view_frame.h"
@@ -26,6 +27,7 @@ struct Relief {
   double bound_violation_max_mm = 0;  // over all bounded vertices, of the final positions
   double order_violation_max_mm = 0;  // over all depth-order rows
   int order_rows = 0;
+  int vertices_beyond_base = 0;  // free, because their rays miss the base
   BoundedQpSolution qp;  // statistics; qp.u is in the gauge of mean s = 1
 };
 
@@ -41,8 +43,11 @@ class ReliefSolver {
   /// Options with equal keys share a solver.
   static std::string key(const ReliefOptions& options);
 
-  /// Throws Error: invalid_input (thickness beyond the viewing distance), could_not_solve, cancelled.
-  Relief solve(const ReliefOptions& options, Context& context);
+  /// `base`: in view coordinates, of the same options.
+  /// Throws Error: invalid_input (see depth_bounds), could_not_solve, cancelled.
+  Relief solve(const ReliefOptions& options, const BaseSurface& base, Context& context);
+  /// On a flat base.
+  Relief solve(const ReliefOptions& options, Context& context) { return solve(options, BaseSurface(), context); }
 
   const ViewFrame& frame() const { return frame_; }
   const Triangles& F() const { return F_; }

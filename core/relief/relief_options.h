@@ -24,11 +24,31 @@ struct EnumNames<BoundedVertices> {
   static constexpr std::array<std::string_view, 2> labels{"Flat", "May sink"};
 };
 
+enum class BaseShape { flat, cylinder, wave, groove };
+template <>
+struct EnumNames<BaseShape> {
+  static constexpr std::array<std::string_view, 4> names{"flat", "cylinder", "wave", "groove"};
+  static constexpr std::array<std::string_view, 4> labels{"Flat", "Cylinder", "Waves", "V groove"};
+};
+
+enum class BaseMisses { refused, free };
+template <>
+struct EnumNames<BaseMisses> {
+  static constexpr std::array<std::string_view, 2> names{"refused", "free"};
+  static constexpr std::array<std::string_view, 2> labels{"Refuse", "Leave free"};
+};
+
 struct ReliefOptions {
   double thickness_mm = 5;
   double width_mm = 120;
   double plate_mm = 3;
   double margin_mm = 0;
+  BaseShape base = BaseShape::flat;
+  double base_depth_mm = 10;
+  std::optional<double> base_pitch_mm;
+  double base_turn_deg = 0;
+  double carve_depth_mm = 0;
+  BaseMisses base_misses = BaseMisses::refused;
   Projection projection = Projection::perspective;
   std::array<double, 3> direction{0, 0, -1};
   std::array<double, 3> up{0, 1, 0};
@@ -58,6 +78,36 @@ struct ReliefOptions {
                 "How far the plate extends beyond the model on every side. 0 ends the plate at the model's edge.")
           .group("Base")
           .slider(0, 40),
+      parameter("base", &ReliefOptions::base, "Shape of the base",
+                "The surface that the relief is worked into. It keeps to this surface as it keeps to a flat plate.")
+          .group("Base"),
+      parameter(
+          "carve_depth_mm", &ReliefOptions::carve_depth_mm, "Carve into the base", unit::mm, 0, 1000,
+          "How far the relief may go behind the surface of its base. 0 stands out only; 1 to 6 mm are usual for carving.")
+          .group("Base")
+          .slider(0, 20),
+      parameter(
+          "base_depth_mm", &ReliefOptions::base_depth_mm, "Depth of the base", unit::mm, 0.01, 1000,
+          "How far the deepest places of a cylinder, waves or a V groove lie behind the foremost ones, over the width of the plate.")
+          .group("Base")
+          .slider(1, 60)
+          .advanced(),
+      parameter(
+          "base_pitch_mm", &ReliefOptions::base_pitch_mm, "Width of waves or groove", unit::mm, 0.1, 10000,
+          "From one crest of the waves to the next, or from edge to edge of the V groove. Automatic: the width of the plate.")
+          .group("Base")
+          .slider(10, 400)
+          .advanced(),
+      parameter("base_turn_deg", &ReliefOptions::base_turn_deg, "Turn of the base", unit::degrees, -180, 180,
+                "Turns the base on the plate. At 0° waves, groove and cylinder run upwards; at 90° they run across.")
+          .group("Base")
+          .slider(-90, 90)
+          .advanced(),
+      parameter(
+          "base_misses", &ReliefOptions::base_misses, "Where the base ends",
+          "For a base from a file that is smaller than the model: refuse it, or leave the parts without a base behind them free in depth.")
+          .group("Base")
+          .advanced(),
       parameter(
           "projection", &ReliefOptions::projection, "Distance",
           "Near shows the model in perspective from the viewing distance, as a camera would. Far shows it without perspective, as from very far away.")

@@ -143,7 +143,7 @@ TriangleMesh make_solid(const HeightMap& map, double plate_mm, double tolerance_
       if (vertex < 0) {
         vertex = static_cast<int>(vertices.size());
         vertices.emplace_back(p.x * map.pitch_x_mm, p.y * map.pitch_y_mm,
-                              plate_mm + static_cast<double>(map.at(p.y, p.x)));
+                              plate_mm + (static_cast<double>(map.at(p.y, p.x)) - map.floor_mm));
       }
       face[k] = vertex;
     }

@@ -25,11 +25,16 @@ Scene scene(const TriangleMesh& mesh, Projection projection) {
   return s;
 }
 
+DepthBounds slab(const Scene& s, double thickness, const std::vector<char>& bounded) {
+  const Eigen::Index n = s.frame.P.rows();
+  return {Eigen::VectorXd::Constant(n, -thickness), Eigen::VectorXd::Zero(n), bounded, 0};
+}
+
 TEST_CASE("LinearCompression.FillsTheSlabAndKeepsTheOrder") {
   for (const Projection projection : {Projection::perspective, Projection::orthographic}) {
     const Scene s = scene(test::icosphere(3), projection);
     const std::vector<char> all(static_cast<std::size_t>(s.mesh.V.rows()), 1);
-    const Eigen::VectorXd z = s.frame.depth(linear_compression(s.frame, 0.05, all));
+    const Eigen::VectorXd z = s.frame.depth(linear_compression(s.frame, slab(s, 0.05, all)));
     CHECK_THAT(z.minCoeff(), WithinAbs(-0.05, 1e-14));
     CHECK_THAT(z.maxCoeff(), WithinAbs(0, 1e-14));
     for (Eigen::Index i = 1; i < z.size(); ++i) CHECK((z[i] > z[i - 1]) == (s.frame.P(i, 2) > s.frame.P(i - 1, 2)));
@@ -39,7 +44,7 @@ TEST_CASE("LinearCompression.FillsTheSlabAndKeepsTheOrder") {
 TEST_CASE("LinearCompression.OfAFlatModelIsFlat") {
   const Scene s = scene(test::grid(4, 4), Projection::orthographic);
   const std::vector<char> all(static_cast<std::size_t>(s.mesh.V.rows()), 1);
-  CHECK(s.frame.depth(linear_compression(s.frame, 0.05, all)).cwiseAbs().maxCoeff() == 0);
+  CHECK(s.frame.depth(linear_compression(s.frame, slab(s, 0.05, all))).cwiseAbs().maxCoeff() == 0);
 }
 
 TEST_CASE("GradientDomain.FillsTheSlabOverTheVisiblePart") {
@@ -63,7 +68,7 @@ TEST_CASE("GradientDomain.OfGentleSlopesIsLinear") {
   Context context;
   const Eigen::VectorXd gradient =
       s.frame.depth(gradient_domain_compression(s.frame, mesh.F, s.visibility, 0.05, {}, context));
-  const Eigen::VectorXd linear = s.frame.depth(linear_compression(s.frame, 0.05, s.visibility.vertex));
+  const Eigen::VectorXd linear = s.frame.depth(linear_compression(s.frame, slab(s, 0.05, s.visibility.vertex)));
   CHECK((gradient - linear).cwiseAbs().maxCoeff() < 2e-4 * 0.05);
 }
 

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "job/contract/operation_options.h"
 #include "job/operations/relief/relief_operation.h"
 
 #include <cmath>
@@ -8,6 +7,8 @@
 #include "formats/mesh_io.h"
 #include "formats/png/png16.h"
 #include "job/contract/model_input.h"
+#include "job/contract/operation_options.h"
+#include "job/operations/relief/relief_base.h"
 #include "relief/height_map.h"
 #include "relief/relief.h"
 
@@ -16,6 +17,7 @@ namespace {
 
 // Of the relief's thickness: how far the solid's larger triangles may leave the height field.
 constexpr double solid_tolerance = 1e-3;
+constexpr double nodes_of_picture = 400;     // across the base where it is only looked at
 constexpr double unbounded_mm = 1e30;  // stands for "no bound" in relief.ply, where infinity has no safe spelling
 
 std::vector<OutputInfo> relief_outputs() {
@@ -26,6 +28,8 @@ std::vector<OutputInfo> relief_outputs() {
           {"relief.glb", "model/gltf-binary", "GLB", "The relief on its plate, for viewing.", true},
           {"heightmap.png", "image/png", "Height map",
            "Height map with 16-bit grey levels; white is the full thickness. Its scale is in the report.", true},
+          {"base.ply", "application/x-ply", "Base",
+           "The base in the same axes as relief.ply, to draw behind it; a flat plate where the base is flat.", false},
           {"relief.3mf", "model/3mf", "3MF", "The solid for a slicer.", false},
           {"relief.obj", "model/obj", "OBJ", "The solid for a 3D modelling program.", false}};
 }
@@ -52,6 +56,8 @@ std::vector<ReportField> relief_report_fields() {
       {"order_violation_max_mm", "Largest depth order violation", "mm",
        "Largest distance by which a hidden point comes in front of what hides it; practically 0."},
       {"order_rows", "Depth order conditions", "", "Number of conditions that keep what is in front in front."},
+      {"vertices_beyond_base", "Vertices beyond the base", "",
+       "Number of vertices that have no base behind them and are free in depth."},
       {"kkt_residual", "KKT residual", "",
        "Relative error of the optimality conditions (Karush-Kuhn-Tucker) at the solution; practically 0."},
       {"rounds", "Iterations", "", "Number of iterations of the numerical method."},
@@ -73,7 +79,9 @@ std::vector<ReportField> relief_report_fields() {
       {"watertight", "Watertight", "", "Whether the solid has no holes, as slicers need; checked on the result."},
       {"heightmap_pixel_mm", "Height map pixel", "mm", "Width and height of one pixel of the height map."},
       {"heightmap_mm_per_level", "Height map level", "mm",
-       "Height of one of the 65,535 grey levels of the height map; level 0 is the front of the plate."},
+       "Height of one of the 65,535 grey levels of the height map; level 0 is at the height of the floor."},
+      {"heightmap_floor_mm", "Height map floor", "mm",
+       "Height of the map's black above the front of a flat plate; below 0 where the base or the carving goes deeper."},
       {"seconds_read", "Reading", "s", "Time for reading and repairing the file; 0 if it was read before."},
       {"seconds_setup", "Set-up", "s",
        "Time for placing the viewpoint and setting up the equations; 0 if done before."},
@@ -87,30 +95,39 @@ std::vector<ReportField> relief_report_fields() {
 
 Json vector_json(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
-/// A flat slab behind the relief, in view coordinates times size, as a mesh of its own.
-TriangleMesh plate_mesh(PlateSize plate, double plate_mm, double front_mm) {
+/// Across, upwards and towards the viewer from the middle of the plate's front, as a maker would hold it.
+TriangleMesh plate_mesh(PlateSize plate, double plate_mm) {
   TriangleMesh box;
   const double x = plate.width_mm / 2, y = plate.height_mm / 2;
   box.V.resize(8, 3);
-  for (int i = 0; i < 8; ++i) box.V.row(i) << (i & 1 ? x : -x), (i & 2 ? y : -y), front_mm + (i & 4 ? plate_mm : 0.0);
+  for (int i = 0; i < 8; ++i) box.V.row(i) << (i & 1 ? x : -x), (i & 2 ? y : -y), (i & 4 ? -plate_mm : 0.0);
   box.F.resize(12, 3);
-  // In left-handed view axes these turn clockwise seen from outside, and so counter-clockwise in the model's.
   box.F << 0, 1, 2, 1, 3, 2, 4, 6, 5, 5, 6, 7, 0, 4, 1, 1, 4, 5, 2, 3, 6, 3, 7, 6, 0, 2, 4, 2, 6, 4, 1, 5, 3, 3, 5, 7;
   return box;
 }
 
-/// The deformed model standing on its plate: x right, y up, z towards the viewer, as a maker would hold it.
-Model display_model(const ReliefSolver& solver, const Relief& relief, PlateSize plate, const ReliefOptions& options) {
-  const TriangleMesh slab = plate_mesh(plate, options.plate_mm, 0);
+/// The base in the same axes, for pictures only: coarser than the solid, and as deep as it may be carved behind the relief.
+TriangleMesh base_mesh(const ReliefSolver& solver, const Relief& relief, PlateSize plate, const ReliefOptions& options,
+                       const AllowedSpace& space, Context& context) {
+  if (space.base.is_flat() && space.below_mm == 0) return plate_mesh(plate, options.plate_mm);
+  const double pixel_mm = std::max(options.pixel_mm, std::max(plate.width_mm, plate.height_mm) / nodes_of_picture);
+  const HeightMap bed = make_bed_map(relief.moved, solver.F(), options.width_mm, plate, pixel_mm, space, context);
+  TriangleMesh mesh = make_solid(bed, options.plate_mm, solid_tolerance * (bed.top_mm - bed.floor_mm), context);
+  mesh.V.rowwise() -= Eigen::RowVector3d(plate.width_mm / 2, plate.height_mm / 2, options.plate_mm - bed.floor_mm);
+  return mesh;
+}
+
+/// The deformed model on its base, in the same axes.
+Model display_model(const ReliefSolver& solver, const Relief& relief, const TriangleMesh& base, double size_mm) {
   const Eigen::Index n = relief.moved.rows(), m = solver.F().rows();
   Model model;
-  model.mesh.V.resize(n + 8, 3);
-  model.mesh.V.topRows(n) = relief.moved * options.width_mm;
-  model.mesh.V.bottomRows(8) = slab.V;
-  model.mesh.V.col(2) *= -1;
-  model.mesh.F.resize(m + 12, 3);
+  model.mesh.V.resize(n + base.V.rows(), 3);
+  model.mesh.V.topRows(n) = relief.moved * size_mm;
+  model.mesh.V.topRows(n).col(2) *= -1;
+  model.mesh.V.bottomRows(base.V.rows()) = base.V;
+  model.mesh.F.resize(m + base.F.rows(), 3);
   model.mesh.F.topRows(m) = solver.F();
-  model.mesh.F.bottomRows(12) = slab.F.array() + static_cast<int>(n);
+  model.mesh.F.bottomRows(base.F.rows()) = base.F.array() + static_cast<int>(n);
   return model;
 }
 
@@ -140,6 +157,7 @@ void report_relief(Json& report, const LoadedModel& loaded, const ReliefSolver& 
   report["bound_violation_max_mm"] = relief.bound_violation_max_mm;
   report["order_violation_max_mm"] = relief.order_violation_max_mm;
   report["order_rows"] = relief.order_rows;
+  report["vertices_beyond_base"] = relief.vertices_beyond_base;
   report["kkt_residual"] = relief.qp.kkt_residual;
   report["rounds"] = relief.qp.rounds;
   report["active_constraints"] = relief.qp.active_constraints;
@@ -174,10 +192,11 @@ OperationResult run_relief(const OperationCall& call, const ReliefOptions& optio
     call.session.keep(key, solver, solver->memory_mb());
   }
   Stopwatch watch;
+  const BaseSurface base = relief_base(call, options, solver->frame());
   Relief relief;
   {
     const auto span = context.span(0.55, 0.9, "Fitting into the thickness");
-    relief = solver->solve(options, context);
+    relief = solver->solve(options, base, context);
   }
   const double seconds_solve = watch.lap();
 
@@ -190,7 +209,11 @@ OperationResult run_relief(const OperationCall& call, const ReliefOptions& optio
   const ViewFrame& frame = solver->frame();
   const PlateSize plate{options.width_mm + 2 * options.margin_mm,
                         frame.image_height * options.width_mm + 2 * options.margin_mm};
-  report["size_mm"] = {plate.width_mm, plate.height_mm, options.plate_mm + options.thickness_mm};
+  const AllowedSpace space{base, options.thickness_mm, options.carve_depth_mm};
+  const auto base_depth = base.depth_range(0.5 * plate.width_mm / options.width_mm, 0.5 * plate.height_mm / options.width_mm)
+                              .value_or(std::pair{0.0, 0.0});
+  const double range_mm = options.width_mm * (base_depth.second - base_depth.first) + space.above_mm + space.below_mm;
+  report["size_mm"] = {plate.width_mm, plate.height_mm, options.plate_mm + range_mm};
   const auto add = [&](const char* name, Bytes bytes) {
     for (const OutputInfo& info : relief_outputs())
       if (info.name == name) result.outputs.push_back(make_output(info, std::move(bytes)));
@@ -204,15 +227,28 @@ OperationResult run_relief(const OperationCall& call, const ReliefOptions& optio
     write.columns = columns;
     add("relief.ply", write_model(model, MeshFormat::ply, write, context));
   }
-  if (call.wants("relief.glb"))
-    add("relief.glb", write_model(display_model(*solver, relief, plate, options), MeshFormat::glb, context));
+  if (call.wants("relief.glb") || call.wants("base.ply")) {
+    Model drawn;
+    drawn.mesh = base_mesh(*solver, relief, plate, options, space, context);
+    if (call.wants("relief.glb"))
+      add("relief.glb",
+          write_model(display_model(*solver, relief, drawn.mesh, options.width_mm), MeshFormat::glb, context));
+    if (call.wants("base.ply")) {
+      Positions in_view = drawn.mesh.V / options.width_mm;
+      in_view.col(2) *= -1;
+      drawn.mesh.V = frame.to_model(in_view, options.width_mm);
+      add("base.ply", write_model(drawn, MeshFormat::ply, context));
+    }
+  }
   const bool wants_solid = call.wants("relief.stl") || call.wants("relief.3mf") || call.wants("relief.obj");
   if (wants_solid || call.wants("heightmap.png")) {
-    const HeightMap map = make_height_map(relief.moved, solver->F(), options.width_mm, plate, options.pixel_mm,
-                                          options.thickness_mm, context);
+    const HeightMap map =
+        make_height_map(relief.moved, solver->F(), options.width_mm, plate, options.pixel_mm, space, context);
     if (call.wants("heightmap.png")) {
       report["heightmap_pixel_mm"] = {map.pitch_x_mm, map.pitch_y_mm};
-      report["heightmap_mm_per_level"] = options.thickness_mm / 65535;
+      const double of_map_mm = map.top_mm - map.floor_mm;
+      report["heightmap_mm_per_level"] = of_map_mm / 65535;
+      report["heightmap_floor_mm"] = map.floor_mm;
       Grey16Image image;
       image.width = map.columns;
       image.height = map.rows;
@@ -222,7 +258,7 @@ OperationResult run_relief(const OperationCall& call, const ReliefOptions& optio
       for (int row = map.rows - 1; row >= 0; --row)  // pictures start at the top
         for (int column = 0; column < map.columns; ++column)
           image.levels.push_back(static_cast<std::uint16_t>(
-              std::lround(std::min(1.0, static_cast<double>(map.at(row, column)) / options.thickness_mm) * 65535)));
+              std::lround(std::min(1.0, (static_cast<double>(map.at(row, column)) - map.floor_mm) / of_map_mm) * 65535)));
       add("heightmap.png", write_png16(image));
     }
     if (wants_solid) {
@@ -249,7 +285,7 @@ Operation relief_operation() {
   operation.name = "relief";
   operation.title = "Relief";
   operation.summary = "Turns a model into a thin relief that still looks deep from the viewpoint you choose.";
-  operation.inputs = {model_input_info()};
+  operation.inputs = {model_input_info(), base_input_info()};
   operation.outputs = relief_outputs();
   operation.report = relief_report_fields();
   take_options<ReliefOptions>(operation, run_relief);

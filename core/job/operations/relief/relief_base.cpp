@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "job/operations/relief/relief_base.h"
+
+#include "job/contract/model_input.h"
+#include "relief/base/base_shape.h"
+
+namespace formwright {
+namespace {
+
+constexpr const char* base_file = "base_mesh";
+
+}  // namespace
+
+InputInfo base_input_info() {
+  InputInfo info = model_input_info();
+  info.name = base_file;
+  info.label = "Base";
+  info.help =
+      "A surface to work the relief into, in millimetres: x right, y up, z towards the viewer, the middle of the relief at 0, 0, 0.";
+  info.required = false;
+  info.accepts_sample = false;
+  return info;
+}
+
+BaseSurface relief_base(const OperationCall& call, const ReliefOptions& options, const ViewFrame& frame) {
+  if (call.inputs.contains(base_file)) {
+    if (options.base != BaseShape::flat)
+      throw Error(ErrorCode::invalid_input, "base",
+                  "The base is given twice, as a file and as a built-in shape: leave one of them out.");
+    return BaseSurface(base_from_file(load_model(call, base_file)->model.mesh, options));
+  }
+  return options.base == BaseShape::flat ? BaseSurface() : BaseSurface(base_shape(options, frame));
+}
+
+}  // namespace formwright

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "relief/base/base_shape.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "base/format.h"
+
+namespace formwright {
+namespace {
+
+constexpr int cylinder_steps = 2048, steps_a_wave = 512, max_waves = 128;
+
+/// The shape across its direction: position t over the plate and depth z behind its front, t ascending.
+struct Profile {
+  std::vector<double> t, z;
+  void add(double at, double depth) {
+    t.push_back(at);
+    z.push_back(depth);
+  }
+};
+
+/// All lengths normalised. `reach`: half the width that the profile must have; `half_plate`: half the plate's.
+Profile cylinder(double depth, double reach, double half_plate) {
+  Profile p;
+  // The circle through the middle of the plate's front and its edges, which lie `depth` behind.
+  const double radius = (half_plate * half_plate + depth * depth) / (2 * depth);
+  const double slope = half_plate / (radius - depth);
+  p.add(-reach, depth + (reach - half_plate) * slope);
+  for (int k = 0; k <= cylinder_steps; ++k) {
+    const double t = half_plate * (2.0 * k / cylinder_steps - 1);
+    p.add(t, t * t / (radius + std::sqrt(radius * radius - t * t)));
+  }
+  p.add(reach, depth + (reach - half_plate) * slope);
+  return p;
+}
+
+Profile wave(double depth, double reach, double pitch) {
+  Profile p;
+  const int steps = static_cast<int>(std::ceil(2 * reach / pitch * steps_a_wave));
+  for (int k = 0; k <= steps; ++k) {
+    const double t = reach * (2.0 * k / steps - 1);
+    p.add(t, 0.5 * depth * (1 - std::cos(2 * std::numbers::pi * t / pitch)));
+  }
+  return p;
+}
+
+Profile groove(double depth, double reach, double pitch) {
+  Profile p;
+  const double edge = 0.5 * pitch;
+  if (edge < reach) p.add(-reach, 0), p.add(-edge, 0);
+  else p.add(-reach, depth * (1 - reach / edge));
+  p.add(0, depth);
+  if (edge < reach) p.add(edge, 0), p.add(reach, 0);
+  else p.add(reach, depth * (1 - reach / edge));
+  return p;
+}
+
+TriangleMesh swept(const Profile& profile, double reach, double turn_deg) {
+  const double angle = turn_deg * std::numbers::pi / 180, c = std::cos(angle), s = std::sin(angle);
+  const auto n = static_cast<Eigen::Index>(profile.t.size());
+  TriangleMesh mesh;
+  mesh.V.resize(2 * n, 3);
+  mesh.F.resize(2 * (n - 1), 3);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const double t = profile.t[static_cast<std::size_t>(k)], z = profile.z[static_cast<std::size_t>(k)];
+    for (const int end : {0, 1}) {
+      const double along = end == 0 ? -reach : reach;
+      mesh.V.row(2 * k + end) << c * t - s * along, s * t + c * along, z;
+    }
+    if (k + 1 == n) continue;
+    const int first = static_cast<int>(2 * k);
+    mesh.F.row(2 * k) << first, first + 1, first + 2;
+    mesh.F.row(2 * k + 1) << first + 1, first + 3, first + 2;
+  }
+  return mesh;
+}
+
+}  // namespace
+
+TriangleMesh base_shape(const ReliefOptions& options, const ViewFrame& frame) {
+  const double size = options.width_mm, depth = options.base_depth_mm / size;
+  const double half_x = 0.5 + options.margin_mm / size, half_y = 0.5 * frame.image_height + options.margin_mm / size;
+  // Rays spread behind the plate's front.
+  const double spread = 1 + frame.kappa * (depth + options.carve_depth_mm / size);
+  const double corner = std::hypot(half_x, half_y), reach = 1.01 * spread * corner;
+  const double angle = options.base_turn_deg * std::numbers::pi / 180;
+  const double half_across = std::abs(std::cos(angle)) * half_x + std::abs(std::sin(angle)) * half_y;
+  const double pitch = options.base_pitch_mm ? *options.base_pitch_mm / size : 2 * half_across;
+  switch (options.base) {
+    case BaseShape::cylinder:
+      if (depth >= half_across)
+        throw Error(ErrorCode::invalid_input, "base_depth_mm",
+                    "The cylinder would have to be deeper than half its width: make the base's depth less than " +
+                        with_digits(std::floor(half_across * size), 4) + " mm, or the relief wider.");
+      return swept(cylinder(depth, reach, half_across), reach, options.base_turn_deg);
+    case BaseShape::wave:
+      if (pitch * max_waves < 2 * reach)
+        throw Error(ErrorCode::invalid_input, "base_pitch_mm",
+                    "The waves are too short for this width: make them at least " +
+                        with_decimals(2 * reach * size / max_waves + 0.05, 1) + " mm long.");
+      return swept(wave(depth, reach, pitch), reach, options.base_turn_deg);
+    default: return swept(groove(depth, reach, pitch), reach, options.base_turn_deg);
+  }
+}
+
+TriangleMesh base_from_file(const TriangleMesh& mesh, const ReliefOptions& options) {
+  if (mesh.F.rows() == 0)
+    throw Error(ErrorCode::invalid_input, "base_mesh", "The base has no triangles: choose another file.");
+  TriangleMesh base = mesh;
+  base.V /= options.width_mm;
+  base.V.col(2) *= -1;  // away from the viewer
+  return base;
+}
+
+}  // namespace formwright

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// How far each vertex of a relief may stand before its base and be carved into it: eq. (3.10) along its ray.
+#include <vector>
+
+#include "base/context.h"
+#include "relief/base/base_surface.h"
+#include "relief/relief_options.h"
+#include "relief/visibility.h"
+
+namespace formwright {
+
+struct DepthBounds {
+  Eigen::VectorXd nearest, farthest;  // n, depth z in view coordinates, nearest <= farthest
+  std::vector<char> bounded;          // n, 1 where they hold
+  int missed = 0;                     // vertices whose rays miss the base; they are free
+};
+
+/// From `thickness_mm` before the base to `carve_depth_mm` behind it, both along z, for the vertices that `bounded_vertices`
+/// says. A vertex that is free has the bounds of the plane z = 0.
+/// Throws Error{invalid_input}: rays miss the base and `base_misses` refuses that; none meets it; the base or the relief
+/// reaches more than half-way to the viewpoint.
+DepthBounds depth_bounds(const ViewFrame& frame, const Visibility& visibility, const BaseSurface& base,
+                         const ReliefOptions& options, Context& context);
+
+}  // namespace formwright

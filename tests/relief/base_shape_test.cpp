@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "relief/base/base_shape.h"
+
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
+
+#include <cmath>
+#include <numbers>
+
+#include "geometry/test_meshes.h"
+#include "relief/base/base_surface.h"
+
+namespace formwright {
+namespace {
+using Catch::Matchers::WithinAbs;
+
+ReliefOptions on(BaseShape shape, Projection projection = Projection::perspective) {
+  ReliefOptions options;
+  options.width_mm = 100;
+  options.margin_mm = 10;
+  options.base = shape;
+  options.base_depth_mm = 20;
+  options.base_pitch_mm = 60;
+  options.projection = projection;
+  return options;
+}
+
+/// Depth of the shapes in units of the width, by their definition, at a place t across them.
+double depth_of(const ReliefOptions& options, double t) {
+  const double d = options.base_depth_mm / options.width_mm, pitch = *options.base_pitch_mm / options.width_mm;
+  if (options.base == BaseShape::wave) return d * std::pow(std::sin(std::numbers::pi * t / pitch), 2);
+  if (options.base == BaseShape::groove) return d * std::max(0.0, 1 - std::abs(t) / (pitch / 2));
+  const double half = 0.6, radius = (half * half + d * d) / (2 * d);
+  return radius - std::sqrt(radius * radius - t * t);
+}
+
+TEST_CASE("BaseShape.IsWhatItsNameSays") {
+  for (const BaseShape shape : {BaseShape::cylinder, BaseShape::wave, BaseShape::groove}) {
+    INFO(static_cast<int>(shape));
+    const ReliefOptions options = on(shape);
+    const BaseSurface base(base_shape(options, make_view_frame(test::icosphere(2), options)));
+    for (const double t : {-0.59, -0.3001, -0.17, 0.0, 0.04, 0.2999, 0.6})
+      for (const double along : {-0.5, 0.0, 0.31})
+        CHECK_THAT(base.depth_at(t, along).value(), WithinAbs(depth_of(options, t), 1e-5 * 0.2));
+  }
+}
+
+TEST_CASE("BaseShape.TurnsOnThePlate") {
+  ReliefOptions options = on(BaseShape::groove);
+  options.base_turn_deg = 30;
+  const BaseSurface base(base_shape(options, make_view_frame(test::icosphere(2), options)));
+  const double c = std::cos(std::numbers::pi / 6), s = std::sin(std::numbers::pi / 6);
+  for (const double t : {-0.2, 0.0, 0.1, 0.4})
+    for (const double along : {-0.3, 0.2})
+      CHECK_THAT(base.depth_at(c * t - s * along, s * t + c * along).value(), WithinAbs(depth_of(options, t), 1e-12));
+}
+
+TEST_CASE("BaseShape.TakesTheWidthOfThePlateWithoutAPitch") {
+  ReliefOptions options = on(BaseShape::groove);
+  options.base_pitch_mm.reset();
+  const BaseSurface base(base_shape(options, make_view_frame(test::icosphere(2), options)));
+  CHECK_THAT(base.depth_at(0, 0).value(), WithinAbs(0.2, 1e-12));
+  CHECK_THAT(base.depth_at(0.3, 0).value(), WithinAbs(0.1, 1e-12));
+  CHECK_THAT(base.depth_at(0.6, 0).value(), WithinAbs(0, 1e-12));
+}
+
+TEST_CASE("BaseShape.IsMetByEveryRay") {
+  // The flank of a groove, on the ray from the viewpoint (0, 0, -D) through p, in closed form.
+  const ReliefOptions options = on(BaseShape::groove);
+  const TriangleMesh ball = test::icosphere(3);
+  const ViewFrame frame = make_view_frame(ball, options);
+  const BaseSurface base(base_shape(options, frame));
+  const double distance = 1 / frame.kappa, depth = 0.2, half = 0.3;
+  for (const double shift : {0.0, -0.05, 0.02})
+    for (Eigen::Index i = 0; i < frame.P.rows(); ++i) {
+      const double slope = std::abs(frame.P(i, 0)) / (frame.P(i, 2) + distance);  // |x| = slope (z + D)
+      const double on_flank = (depth + shift - depth / half * slope * distance) / (1 + depth / half * slope);
+      CHECK_THAT(base.depth_on_ray(frame, i, shift).value(), WithinAbs(std::max(shift, on_flank), 1e-12));
+    }
+}
+
+TEST_CASE("BaseShape.ReachesAsDeepAsItSays") {
+  for (const BaseShape shape : {BaseShape::cylinder, BaseShape::wave, BaseShape::groove}) {
+    const ReliefOptions options = on(shape);
+    const BaseSurface base(base_shape(options, make_view_frame(test::icosphere(2), options)));
+    const auto [least, largest] = base.depth_range(0.6, 0.6).value();
+    CHECK_THAT(least, WithinAbs(0, 2e-6));
+    CHECK_THAT(largest, WithinAbs(0.2, 2e-6));
+  }
+  // A part of the groove, cut through its flanks.
+  const ReliefOptions options = on(BaseShape::groove);
+  const BaseSurface base(base_shape(options, make_view_frame(test::icosphere(2), options)));
+  const auto [least, largest] = base.depth_range(0.15, 0.2).value();
+  CHECK_THAT(least, WithinAbs(0.1, 1e-12));
+  CHECK_THAT(largest, WithinAbs(0.2, 1e-12));
+}
+
+TEST_CASE("BaseShape.RefusesWhatCannotBe") {
+  const ViewFrame frame = make_view_frame(test::icosphere(2), on(BaseShape::cylinder));
+  ReliefOptions options = on(BaseShape::cylinder);
+  options.base_depth_mm = 60;
+  CHECK_THROWS_AS(base_shape(options, frame), Error);
+  options = on(BaseShape::wave);
+  options.base_pitch_mm = 0.5;
+  CHECK_THROWS_AS(base_shape(options, frame), Error);
+  CHECK_THROWS_AS(base_from_file(TriangleMesh{Positions(0, 3), Triangles(0, 3)}, options), Error);
+}
+
+}  // namespace
+}  // namespace formwright

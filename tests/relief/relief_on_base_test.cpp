@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Reliefs on other bases than a flat plate: bounds, solids, files.
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
+
+#include <cmath>
+
+#include "geometry/mesh/adjacency.h"
+#include "geometry/mesh/measures.h"
+#include "geometry/test_meshes.h"
+#include "relief/base/base_shape.h"
+#include "relief/height_map.h"
+#include "relief/relief.h"
+
+namespace formwright {
+namespace {
+using Catch::Matchers::WithinAbs;
+using Catch::Matchers::WithinRel;
+
+ReliefOptions groove(Projection projection) {
+  ReliefOptions options;
+  options.width_mm = 100;
+  options.thickness_mm = 1;
+  options.carve_depth_mm = 6;
+  options.base = BaseShape::groove;
+  options.base_depth_mm = 30;
+  options.base_pitch_mm = 80;
+  options.projection = projection;
+  return options;
+}
+
+/// Heights of that groove above the plate's front, mm.
+double groove_mm(double x_mm) { return -30 * std::max(0.0, 1 - std::abs(x_mm) / 40); }
+
+struct Solved {
+  ReliefOptions options;
+  BaseSurface base;
+  Triangles F;
+  ViewFrame frame;
+  Relief relief;
+};
+
+Solved solved(const TriangleMesh& mesh, const ReliefOptions& options) {
+  Context context;
+  ReliefSolver solver(mesh, options, context);
+  const BaseSurface base(base_shape(options, solver.frame()));
+  return {options, base, solver.F(), solver.frame(), solver.solve(options, base, context)};
+}
+
+/// A rectangle across the view, 100 mm beyond all sides, `height_mm` towards the viewer and tilted by `slope` along x.
+TriangleMesh plane_mm(double half_mm, double height_mm, double slope = 0) {
+  TriangleMesh mesh;
+  mesh.V.resize(4, 3);
+  for (int i = 0; i < 4; ++i) {
+    const double x = i & 1 ? half_mm : -half_mm, y = i & 2 ? half_mm : -half_mm;
+    mesh.V.row(i) << x, y, height_mm + slope * x;
+  }
+  mesh.F.resize(2, 3);
+  mesh.F << 0, 1, 2, 1, 3, 2;
+  return mesh;
+}
+
+TEST_CASE("ReliefOnBase.EveryVertexIsWithinItsBounds") {
+  for (const Projection projection : {Projection::perspective, Projection::orthographic}) {
+    const Solved s = solved(test::icosphere(4), groove(projection));
+    double most_above = -1e9, most_below = -1e9;
+    for (Eigen::Index i = 0; i < s.relief.moved.rows(); ++i) {
+      CHECK(s.relief.lambda_mm[i] >= s.relief.lambda_min_mm[i]);
+      CHECK(s.relief.lambda_mm[i] <= s.relief.lambda_max_mm[i]);
+      const double above = -100 * s.relief.moved(i, 2) - groove_mm(100 * s.relief.moved(i, 0));
+      most_above = std::max(most_above, above);
+      most_below = std::max(most_below, -above);
+    }
+    CHECK(s.relief.bound_violation_max_mm <= 0);
+    // The space is used up to both limits, and not left.
+    CHECK_THAT(most_above, WithinAbs(1, 1e-9));
+    CHECK_THAT(most_below, WithinAbs(6, 1e-9));
+    CHECK(s.relief.vertices_beyond_base == 0);
+  }
+}
+
+TEST_CASE("ReliefOnBase.TheSolidStaysInTheAllowedSpace") {
+  const Solved s = solved(test::icosphere(4), groove(Projection::perspective));
+  Context context;
+  const AllowedSpace space{s.base, s.options.thickness_mm, s.options.carve_depth_mm};
+  const PlateSize plate{120, 110};
+  const HeightMap map = make_height_map(s.relief.moved, s.F, 100, plate, 0.5, space, context);
+  CHECK_THAT(map.floor_mm, WithinAbs(-36, 1e-9));
+  CHECK_THAT(map.top_mm, WithinAbs(1, 1e-9));
+  int carved = 0, raised = 0;
+  for (int row = 0; row < map.rows; ++row)
+    for (int column = 0; column < map.columns; ++column) {
+      const double above = static_cast<double>(map.at(row, column)) - groove_mm(column * map.pitch_x_mm - 60);
+      REQUIRE(above <= 1 + 1e-5);
+      REQUIRE(above >= -6 - 1e-5);
+      carved += above < -1e-3;
+      raised += above > 1e-3;
+    }
+  CHECK(carved > 5000);
+  CHECK(raised > 100);
+
+  const double tolerance_mm = 1e-3;
+  const TriangleMesh solid = make_solid(map, 3, tolerance_mm, context);
+  CHECK(Adjacency(solid).is_closed());
+  CHECK_THAT(solid.V.col(2).minCoeff(), WithinAbs(0, 0));
+  CHECK(solid.V.col(2).maxCoeff() <= 3 + 37 + 1e-5);
+  CHECK(solid.V.col(2).minCoeff() >= 0);
+}
+
+TEST_CASE("ReliefOnBase.BesideTheModelIsTheBase") {
+  // A base without a relief on it: the volume of a plate with a groove, in closed form, at two resolutions.
+  ReliefOptions options = groove(Projection::orthographic);
+  const ViewFrame frame = make_view_frame(test::icosphere(2), options);
+  const BaseSurface base(base_shape(options, frame));
+  Context context;
+  const AllowedSpace space{base, 1, 0};
+  const double exact = 100 * 100 * (5 + 30) - 0.5 * 80 * 30 * 100;
+  for (const double pixel : {4.0, 2.0, 1.0}) {
+    const HeightMap map =
+        make_height_map(Positions(0, 3), Triangles(0, 3), 100, {100, 100}, pixel, space, context);
+    // The grid has nodes at the groove's bottom and at its edges: nothing but the rounding of heights is left.
+    CHECK_THAT(signed_volume(make_solid(map, 5, 1e-9, context)), WithinRel(exact, 2e-6));
+  }
+}
+
+TEST_CASE("ReliefOnBase.AFlatBaseFromAFileIsThePlate") {
+  ReliefOptions options;
+  options.width_mm = 100;
+  Context context;
+  const TriangleMesh mesh = test::icosphere(3);
+  ReliefSolver solver(mesh, options, context);
+  const Relief plain = solver.solve(options, context);
+  const Relief same = solver.solve(options, BaseSurface(base_from_file(plane_mm(200, 0), options)), context);
+  CHECK((plain.moved - same.moved).cwiseAbs().maxCoeff() <= 1e-9);
+  CHECK_THAT(same.energy, WithinAbs(plain.energy, 1e-9 * plain.energy));
+  CHECK_THAT(same.energy_linear, WithinAbs(plain.energy_linear, 1e-9 * plain.energy_linear));
+}
+
+TEST_CASE("ReliefOnBase.ABaseFartherAwayOnlyShiftsAFarView") {
+  ReliefOptions options;
+  options.width_mm = 100;
+  options.projection = Projection::orthographic;
+  Context context;
+  ReliefSolver solver(test::icosphere(3), options, context);
+  const Relief plain = solver.solve(options, context);
+  const Relief behind = solver.solve(options, BaseSurface(base_from_file(plane_mm(200, -12), options)), context);
+  CHECK((behind.moved.col(2) - plain.moved.col(2)).isApproxToConstant(0.12, 1e-9));
+}
+
+TEST_CASE("ReliefOnBase.WhatHasNoBaseBehindItIsFreeOrRefused") {
+  ReliefOptions options;
+  options.width_mm = 100;
+  Context context;
+  ReliefSolver solver(test::icosphere(3), options, context);
+  const BaseSurface small(base_from_file(plane_mm(30, 0), options));
+  CHECK_THROWS_AS(solver.solve(options, small, context), Error);
+  options.base_misses = BaseMisses::free;
+  const Relief relief = solver.solve(options, small, context);
+  CHECK(relief.vertices_beyond_base > 100);
+  CHECK(relief.vertices_beyond_base < relief.u.size());
+  int free = 0;
+  for (const double largest : relief.lambda_max_mm) free += std::isinf(largest);
+  CHECK(free == relief.vertices_beyond_base);
+  CHECK(relief.bound_violation_max_mm <= 0);
+
+  const BaseSurface before(base_from_file(plane_mm(200, 2000), options));  // behind the viewer
+  CHECK_THROWS_AS(solver.solve(options, before, context), Error);
+  const BaseSurface near(base_from_file(plane_mm(200, 250), options));  // half-way and more
+  CHECK_THROWS_AS(solver.solve(options, near, context), Error);
+}
+
+}  // namespace
+}  // namespace formwright

@@ -90,19 +90,19 @@ struct ReliefOptions {
           "base_depth_mm", &ReliefOptions::base_depth_mm, "Depth of the base", unit::mm, 0.01, 1000,
           "How far the deepest places of a cylinder, waves or a V groove lie behind the foremost ones, over the width of the plate.")
           .group("Base")
-          .slider(1, 60)
-          .advanced(),
+          .only_with("base", "cylinder", "wave", "groove")
+          .slider(1, 60),
       parameter(
           "base_pitch_mm", &ReliefOptions::base_pitch_mm, "Width of waves or groove", unit::mm, 0.1, 10000,
           "From one crest of the waves to the next, or from edge to edge of the V groove. Automatic: the width of the plate.")
           .group("Base")
-          .slider(10, 400)
-          .advanced(),
+          .only_with("base", "wave", "groove")
+          .slider(10, 400),
       parameter("base_turn_deg", &ReliefOptions::base_turn_deg, "Turn of the base", unit::degrees, -180, 180,
                 "Turns the base on the plate. At 0° waves, groove and cylinder run upwards; at 90° they run across.")
           .group("Base")
-          .slider(-90, 90)
-          .advanced(),
+          .only_with("base", "cylinder", "wave", "groove")
+          .slider(-90, 90),
       parameter(
           "base_misses", &ReliefOptions::base_misses, "Where the base ends",
           "For a base from a file that is smaller than the model: refuse it, or leave the parts without a base behind them free in depth.")
@@ -124,12 +124,14 @@ struct ReliefOptions {
           "field_of_view_deg", &ReliefOptions::field_of_view_deg, "Field of view", unit::degrees, 0.1, 120,
           "Angle that the width of the model fills in the viewer's eye, for near views only. A smaller angle looks from farther away; 20° is usual.")
           .group("Viewpoint")
+          .only_with("projection", "perspective")
           .slider(2, 60)
           .advanced(),
       parameter(
           "distance_mm", &ReliefOptions::distance_mm, "Viewing distance", unit::mm, 0.1, 1e7,
           "Distance from the viewpoint to the plate, for near views only. Automatic: computed from the field of view.")
           .group("Viewpoint")
+          .only_with("projection", "perspective")
           .slider(50, 2000)
           .advanced(),
       parameter(

@@ -45,7 +45,10 @@ FlagInfo parameter_flag(const ParameterInfo& info) {
   if (info.kind == ParameterKind::number || info.kind == ParameterKind::integer ||
       info.kind == ParameterKind::optional_number)
     range = number(info.minimum) + " to " + number(info.maximum) + (info.unit.empty() ? "" : " " + info.unit) + ", ";
-  flag.help = info.help + " [" + range + "default " + default_text(info) + "]";
+  const std::string only_with = info.only_with.empty() ? ""
+                                                       : " Only with " + dashed(info.only_with) + " " +
+                                                             joined(info.only_with_choices, " or ") + ".";
+  flag.help = info.help + only_with + " [" + range + "default " + default_text(info) + "]";
   return flag;
 }
 

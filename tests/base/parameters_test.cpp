@@ -25,7 +25,7 @@ struct PaintOptions {
   static constexpr auto parameters = std::tuple{
       parameter("layer_mm", &PaintOptions::layer_mm, "Layer", unit::mm, 0.1, 3, "Thickness of a coat.").slider(0.2, 1),
       parameter("coats", &PaintOptions::coats, "Coats", unit::none, 1, 9, "How many.").formerly("layers"),
-      parameter("gloss", &PaintOptions::gloss, "Gloss", "Shiny."),
+      parameter("gloss", &PaintOptions::gloss, "Gloss", "Shiny.").only_with("colour", "red"),
       parameter("drying_s", &PaintOptions::drying_s, "Drying", unit::seconds, 0, 100, "Time between coats.").advanced(),
       parameter("colour", &PaintOptions::colour, "Colour", "Which."),
       parameter("from", &PaintOptions::from, "From", "Where the brush comes from.").group("Brush")};
@@ -99,6 +99,8 @@ TEST_CASE("Parameters.SchemaCarriesUnitRangeDefaultAndHelp") {
   CHECK(parameter_schema(infos[3])["default"] == nullptr);
   CHECK(parameter_schema(infos[4])["enum"] == Json{"red", "deep_blue"});
   CHECK(parameter_schema(infos[5])["x-group"] == "Brush");
+  CHECK(parameter_schema(infos[2])["x-only-with"] == Json{{"parameter", "colour"}, {"values", {"red"}}});
+  CHECK_FALSE(parameter_schema(infos[1]).contains("x-only-with"));
 }
 
 TEST_CASE("Parameters.FlagsParseToTheSameValues") {

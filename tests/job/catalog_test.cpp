@@ -64,6 +64,19 @@ TEST_CASE("Catalog.EveryNameStandsOnceAndEverythingIsSaid") {
   }
 }
 
+TEST_CASE("Catalog.AParameterOfOneChoiceNamesIt") {
+  for (const Operation& operation : operations())
+    for (const ParameterInfo& info : operation.parameters) {
+      if (info.only_with.empty()) continue;
+      INFO(operation.name << " " << info.name);
+      const auto choice = std::ranges::find(operation.parameters, info.only_with, &ParameterInfo::name);
+      REQUIRE(choice != operation.parameters.end());
+      CHECK_FALSE(info.only_with_choices.empty());
+      for (const std::string& value : info.only_with_choices)
+        CHECK(std::ranges::find(choice->choices, value) != choice->choices.end());
+    }
+}
+
 TEST_CASE("Catalog.PresetsHoldValuesThatTheirOperationTakes") {
   for (const Operation& operation : operations()) {
     std::set<std::string> flags;  // all that a command takes shares one list of flags

@@ -97,6 +97,8 @@ Json parameter_schema(const ParameterInfo& info) {
   if (!info.unit.empty()) schema["x-unit"] = info.unit;
   if (!info.group.empty()) schema["x-group"] = info.group;
   if (info.advanced) schema["x-advanced"] = true;
+  if (!info.only_with.empty())
+    schema["x-only-with"] = {{"parameter", info.only_with}, {"values", info.only_with_choices}};
   return schema;
 }
 

@@ -48,6 +48,8 @@ struct ParameterInfo {
   std::string old_name;  // still understood, in JSON and as a flag; "" where there is none
   ParameterKind kind = ParameterKind::number;
   bool advanced = false;
+  std::string only_with;                        // the choice that it belongs to; "" where it always counts
+  std::vector<std::string> only_with_choices;   // and the values of that choice with which it counts
   double minimum = 0, maximum = 0;                // number, optional_number, integer; inclusive
   double slider_minimum = 0, slider_maximum = 0;  // the useful part of the range
   std::vector<std::string> choices, choice_labels;
@@ -66,6 +68,8 @@ struct Parameter {
   bool advanced_ = false;
   double slider_minimum = 0, slider_maximum = 0;
   std::string_view old_name_ = "";
+  std::string_view only_with_ = "";
+  std::array<std::string_view, 4> only_with_choices_{};
 
   constexpr Parameter advanced() const {
     Parameter copy = *this;
@@ -81,6 +85,15 @@ struct Parameter {
   constexpr Parameter formerly(std::string_view old_name) const {
     Parameter copy = *this;
     copy.old_name_ = old_name;
+    return copy;
+  }
+  /// It counts only while another parameter, a choice, has one of these values, at most four; else controls hide it. It is
+  /// valid all the same.
+  template <class... Choices>
+  constexpr Parameter only_with(std::string_view choice, Choices... values) const {
+    Parameter copy = *this;
+    copy.only_with_ = choice;
+    copy.only_with_choices_ = {std::string_view(values)...};
     return copy;
   }
   /// The part of the range a slider shows; the whole range stays valid when typed.
@@ -112,7 +125,8 @@ constexpr auto inherit_parameters(const std::tuple<Parameters...>& base) {
                                  p.minimum,        p.maximum,
                                  p.help,           p.group_,
                                  p.advanced_,      p.slider_minimum,
-                                 p.slider_maximum, p.old_name_};
+                                 p.slider_maximum, p.old_name_, p.only_with_,
+                                 p.only_with_choices_};
   };
   return std::apply([&](const auto&... p) { return std::tuple{lift(p)...}; }, base);
 }
@@ -200,6 +214,9 @@ std::vector<ParameterInfo> describe_parameters() {
     info.help = p.help;
     info.group = p.group_;
     info.old_name = p.old_name_;
+    info.only_with = p.only_with_;
+    for (const std::string_view choice : p.only_with_choices_)
+      if (!choice.empty()) info.only_with_choices.emplace_back(choice);
     info.kind = parameters_detail::kind_of<T>();
     info.advanced = p.advanced_;
     info.minimum = p.minimum;

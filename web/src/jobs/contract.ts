@@ -83,6 +83,8 @@ export interface ParameterSchema {
   readonly 'x-unit'?: string;
   readonly 'x-group'?: string;
   readonly 'x-advanced'?: boolean;
+  /** It counts only while this choice has one of these values. */
+  readonly 'x-only-with'?: { readonly parameter: string; readonly values: readonly string[] };
   readonly 'x-choice-labels'?: readonly string[];
 }
 

@@ -17,7 +17,7 @@ namespace {
 
 // Of the relief's thickness: how far the solid's larger triangles may leave the height field.
 constexpr double solid_tolerance = 1e-3;
-constexpr double nodes_of_picture = 400;     // across the base where it is only looked at
+constexpr double nodes_of_picture = 256;     // across the base where it is only looked at
 constexpr double unbounded_mm = 1e30;  // stands for "no bound" in relief.ply, where infinity has no safe spelling
 
 std::vector<OutputInfo> relief_outputs() {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The relief's parameters and its one filled button.
 import { useState } from 'preact/hooks';
-import type { OutputDeclaration } from '../../jobs/contract';
+import type { Operation, OutputDeclaration } from '../../jobs/contract';
 import {
   Button,
   Dialog,
@@ -23,6 +23,7 @@ import { ModelRow } from '../../shared/panels/model_row';
 import { printInPlastic } from '../../shared/print/print_request';
 import { outputOf } from '../../shared/session/full_solve';
 import { howMadeItem } from '../../shared/session/how_made';
+import { BaseFile } from './base_file';
 import type { ReliefSession } from './relief_session';
 import type { SendToMill } from './send_relief';
 import { sendRelief } from './send_relief';
@@ -43,13 +44,19 @@ export function Inspector(props: InspectorProps) {
   const { model, parameters } = session.document.value;
   const operation = session.operation.value;
   if (model === null || operation === null) return null;
-  const head = { Viewpoint: <ViewpointTools session={session} viewport={viewport} /> };
+  // Groups stand in this order.
+  const head = {
+    Viewpoint: <ViewpointTools session={session} viewport={viewport} />,
+    Relief: null,
+    Base: <BaseFile session={session} />,
+  };
+  const shown = session.document.value.base ? withoutShape(operation) : operation;
   return (
     <>
       <div class="inspector-scroll" tabIndex={-1}>
         <ModelRow session={session} picture={picture} onReplace={onReplace} />
         <ParameterPanel
-          operation={operation}
+          operation={shown}
           parameters={parameters}
           errors={session.fieldErrors.value}
           onPreview={(name, value) => session.preview(name, value)}
@@ -62,6 +69,12 @@ export function Inspector(props: InspectorProps) {
       </div>
     </>
   );
+}
+
+/** A base from a file has no built-in shape beside it. */
+function withoutShape(operation: Operation): Operation {
+  const { base: _, ...properties } = operation.parameters.properties;
+  return { ...operation, parameters: { properties } };
 }
 
 function ViewpointTools({ session, viewport }: { session: ReliefSession; viewport: Viewport | null }) {

@@ -33,7 +33,15 @@ export const reliefData = (mesh: ShadedMesh): MeshData => ({
 
 const axis = (report: Report, name: string, otherwise: Vec3): Vec3 => vectorOf(report, name) ?? otherwise;
 
-export function plateOf(report: Report, thickness_mm: number): Plate | null {
+/** A flat plate as the operation writes it is a box. */
+const boxTriangles = 12;
+
+/** What `base.ply` holds beyond a flat plate; null where it is one, which is drawn without a file. */
+export const baseOf = ({ positions, indices }: PlyMesh): MeshData | null =>
+  indices.length > 3 * boxTriangles ? { positions, indices } : null;
+
+/** `base`: drawn instead of a flat plate. */
+export function plateOf(report: Report, thickness_mm: number, base: MeshData | null = null): Plate | null {
   const size = vectorOf(report, 'size_mm');
   const centre = vectorOf(report, 'plate_centre_mm');
   if (size === null || centre === null) return null;
@@ -45,6 +53,7 @@ export function plateOf(report: Report, thickness_mm: number): Plate | null {
     direction: axis(report, 'direction', [0, 0, -1]),
     up: axis(report, 'up', [0, 1, 0]),
     reliefThicknessMm: thickness_mm,
+    ...(base ? { mesh: base } : {}),
   };
 }
 

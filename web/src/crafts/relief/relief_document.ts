@@ -1,13 +1,33 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The relief's part of a project.
-import type { CraftDocument, CraftResult } from '../../shared/session/craft_document';
+import type { JobInput } from '../../jobs/contract';
+import type { Companion, CraftDocument, CraftResult, Subject } from '../../shared/session/craft_document';
 import { CraftCommands, emptyCraft, sameRequest } from '../../shared/session/craft_document';
 
-export const relief = new CraftCommands<CraftDocument>('relief', emptyCraft);
+export interface ReliefDocument extends CraftDocument {
+  /** The file of the surface that the relief is worked into; null for a built-in shape. */
+  readonly base: Companion | null;
+}
 
-/** The result made with exactly the parameters and the model in force, if there is one. */
-export function currentResult({ model, parameters, results }: CraftDocument): CraftResult | null {
-  if (model === null) return null;
-  const request = { mesh: model.mesh.blob, parameters };
+export const relief = new CraftCommands<ReliefDocument>('relief', { ...emptyCraft, base: null });
+
+/** The operation's input for it. */
+export const baseInputs = ({ base }: ReliefDocument): Readonly<Record<string, JobInput>> =>
+  base ? { base_mesh: { sha256: base.file.blob, file_name: base.file_name } } : {};
+
+/** A file takes the place of the built-in shapes. */
+export const takeBase = (base: Companion | null) =>
+  relief.command({ label: base ? 'Choose a base' : 'Use a built-in base' }, ({ parameters }) => {
+    const { base: _, ...others } = parameters;
+    return { base, parameters: base ? others : parameters };
+  });
+
+/** The result made with exactly the parameters and the subject in force, if there is one. */
+export function currentResult(
+  { parameters, results }: ReliefDocument,
+  subject: Subject | null,
+): CraftResult | null {
+  if (subject === null) return null;
+  const request = { mesh: subject.key, parameters };
   return results.find((result) => sameRequest(result, request)) ?? null;
 }

@@ -4,7 +4,7 @@ import { computed, signal } from '@preact/signals';
 import type { JsonObject, Operation, Report } from '../../jobs/contract';
 import { findOperation } from '../../jobs/contract';
 import { readPly } from '../../jobs/mesh_reader';
-import type { CraftDocument, CraftResult, Source } from '../../shared/session/craft_document';
+import type { CraftResult, Source } from '../../shared/session/craft_document';
 import type { Measured } from '../../shared/session/estimate';
 import { estimateMemory_mb, expectedTimes } from '../../shared/session/estimate';
 import { bytesOf } from '../../shared/session/import_model';
@@ -16,21 +16,24 @@ import { figure } from '../../shared/session/report';
 import { RoomSession } from '../../shared/session/room_session';
 import type { Services } from '../../shared/session/services';
 import type { ShadedMesh } from '../../shared/panels/shaded_mesh';
-import type { Viewpoint } from '../../view';
-import { parametersOf } from './meshes';
-import { currentResult, relief } from './relief_document';
+import type { MeshData, Viewpoint } from '../../view';
+import { baseOf, parametersOf } from './meshes';
+import type { ReliefDocument } from './relief_document';
+import { baseInputs, currentResult, relief, takeBase } from './relief_document';
 import { solverSeconds } from './report';
 
 export interface Shown extends ShownWork {
   readonly mesh: ShadedMesh;
+  /** Behind it, where that is no flat plate. */
+  readonly base: MeshData | null;
 }
 
-const shownOutputs = ['relief.ply'];
+const shownOutputs = ['relief.ply', 'base.ply'];
 
-export class ReliefSession extends RoomSession<CraftDocument> {
+export class ReliefSession extends RoomSession<ReliefDocument> {
   readonly operationName = 'relief';
   /** The worker keeps the others until they are asked for. */
-  readonly wantedOutputs = ['relief.ply', 'relief.stl'];
+  readonly wantedOutputs = ['relief.ply', 'base.ply', 'relief.stl'];
   readonly failedTitle = 'Could not solve the relief';
   readonly document = computed(() => relief.of(this.services.projects.document.value));
   readonly operation = computed<Operation | null>(() => {
@@ -38,17 +41,18 @@ export class ReliefSession extends RoomSession<CraftDocument> {
     return catalog === null ? null : (findOperation(catalog, this.operationName) ?? null);
   });
   readonly asked = computed(() => this.document.value.parameters);
-  readonly model: OpenedModel<CraftDocument> = new OpenedModel(this, {
+  readonly model: OpenedModel<ReliefDocument> = new OpenedModel(this, {
     commands: relief,
     inputName: 'mesh',
     ownParameters: (source) => this.#viewpointOf(source),
     // A new model starts with its own viewpoint; sizes stay as the maker set them.
+    furtherInputs: computed(() => baseInputs(this.document.value)),
     forgets: (name) => this.operation.value?.parameters.properties[name]?.['x-group'] === 'Viewpoint',
   });
   readonly hasWork = this.model.isThere;
   readonly subject = this.model.subject;
-  readonly result = this.unlessLost(computed(() => currentResult(this.document.value)));
-  readonly previews = new Previews<CraftDocument, Shown>(this, {
+  readonly result = this.unlessLost(computed(() => currentResult(this.document.value, this.subject.value)));
+  readonly previews = new Previews<ReliefDocument, Shown>(this, {
     shownOutputs,
     failedTitle: 'Could not preview the relief',
     make: (request, signal) => this.#makePreview(request, signal),
@@ -91,9 +95,9 @@ export class ReliefSession extends RoomSession<CraftDocument> {
 
   /** What is shown was made of the model that is open. */
   readonly fits = computed(() => {
-    const { model } = this.document.value;
     const from = this.shown.value?.from;
-    return from !== undefined && (from === model?.mesh.blob || from === model?.preview.blob);
+    const { subject, previewSubject } = this.model;
+    return from !== undefined && (from === subject.value?.key || from === previewSubject.value?.key);
   });
 
   /** Millimetres a unit of the model, as it is drawn beside its relief. */
@@ -102,6 +106,22 @@ export class ReliefSession extends RoomSession<CraftDocument> {
     const reported = this.fits.value ? figure(this.shown.value?.report ?? {}, 'scale_mm_per_unit') : null;
     return reported ?? (positions ? provisionalScale(positions, Number(this.value('width_mm') ?? 100)) : 1);
   });
+
+  /** The surface to work the relief into, from a file. */
+  async openBase(file: File): Promise<void> {
+    const kept = await this.keep(
+      new Uint8Array(await file.arrayBuffer()),
+      file.type || 'application/octet-stream',
+    );
+    this.changesHere()(takeBase({ file_name: file.name, file: kept }));
+    this.services.projects.commit();
+  }
+
+  /** Back to the built-in shapes. */
+  dropBase(): void {
+    this.services.projects.do(takeBase(null));
+    this.services.projects.commit();
+  }
 
   /** The relief is to be made for what this camera sees; `coalesce` while it moves. */
   setViewpoint(camera: Viewpoint, coalesce?: string): void {
@@ -112,8 +132,11 @@ export class ReliefSession extends RoomSession<CraftDocument> {
   }
 
   async #readResult({ outputs, report, parameters, mesh }: CraftResult): Promise<Shown> {
-    const bytes = await this.services.projects.blobs.read(outputs['relief.ply']?.blob ?? '');
-    return { kind: 'full', mesh: await readMesh(bytes), report, parameters, from: mesh };
+    const { blobs } = this.services.projects;
+    const read = await readMesh(await blobs.read(outputs['relief.ply']?.blob ?? ''));
+    const file = outputs['base.ply'];
+    const base = file ? baseOf(await readPly(await blobs.read(file.blob))) : null;
+    return { kind: 'full', mesh: read, base, report, parameters, from: mesh };
   }
 
   async #makePreview({ subject, parameters }: PreviewRequest, signal: AbortSignal): Promise<Shown> {
@@ -121,8 +144,11 @@ export class ReliefSession extends RoomSession<CraftDocument> {
     const job = { operation: this.operationName, parameters, inputs, outputs: shownOutputs };
     const { report, outputs } = await this.services.browser.run(job, { signal });
     const relief = await readPly(await bytesOf({ report, outputs }, 'relief.ply'));
+    const base = outputs.has('base.ply')
+      ? baseOf(await readPly(await bytesOf({ report, outputs }, 'base.ply')))
+      : null;
     this.#measurePreview(report);
-    return { kind: 'preview', mesh: relief, report, parameters, from: subject.key };
+    return { kind: 'preview', mesh: relief, base, report, parameters, from: subject.key };
   }
 
   #measurePreview(report: Report): void {

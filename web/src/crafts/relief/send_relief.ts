@@ -12,10 +12,13 @@ export type SendToMill = (
   size: JsonObject,
 ) => Promise<void>;
 
-/** Of the result in force: white is its thickness, and pixels stand where the relief's own are. */
+/** Of the result in force: from black to white is all above its plate, and pixels stand where the relief's own are. */
 export async function sendRelief(session: ReliefSession, send: SendToMill): Promise<void> {
-  const thickness_mm = session.value('thickness_mm');
   const size = session.result.value?.report['size_mm']; // another may be chosen while the file is made
+  const thickness_mm =
+    Array.isArray(size) && typeof size[2] === 'number'
+      ? size[2] - Number(session.value('plate_mm'))
+      : session.value('thickness_mm');
   const heightMap = await outputOf(session, 'heightmap.png', 'height map');
   const width = Array.isArray(size) && typeof size[0] === 'number' ? { width_mm: size[0] } : {};
   if (heightMap) await send(`${safeFileName(session.title)}.png`, heightMap, { thickness_mm, ...width });

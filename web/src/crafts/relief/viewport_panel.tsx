@@ -182,7 +182,7 @@ function keepDrawn(
     }
     if (drawnRelief === shown) return;
     const thickness = Number(inForceOf(session, shown, 'thickness_mm'));
-    const plate: Plate | null = plateOf(shown.report, thickness);
+    const plate: Plate | null = plateOf(shown.report, thickness, shown.base);
     if (drawnRelief?.from === shown.from && drawnRelief.mesh.indices.length === shown.mesh.indices.length) {
       viewport.updateRelief(shown.mesh.positions, plate);
       viewport.updateAttribute('relief', errorMapping.attribute, errorOf(shown.mesh));

@@ -5,7 +5,7 @@ import { expect, it } from 'vitest';
 import type { Catalog } from '../../../jobs/contract';
 import { findOperation } from '../../../jobs/contract';
 import type { Entry } from './find_parameters';
-import { byGroup, findParameters, hasControl, isChanged } from './find_parameters';
+import { byGroup, counts, findParameters, hasControl, isChanged } from './find_parameters';
 
 const catalog = JSON.parse(
   readFileSync(resolve(import.meta.dirname, '../../../../../tests/job/catalog.json'), 'utf8'),
@@ -57,4 +57,16 @@ it('knows which values differ, and what has no control', () => {
   expect(isChanged({ [optional[0]]: null }, optional)).toBe(false);
   const withoutControl = entriesOf('laser-job').filter((entry) => !hasControl(entry));
   expect(withoutControl.map(([name]) => name)).toEqual(['no_go']);
+});
+
+it('knows which parameters count with the choice that is made', () => {
+  const all = entriesOf('relief');
+  const named = (name: string) => all.find(([own]) => own === name) ?? expect.fail(name);
+  const pitch = named('base_pitch_mm');
+  expect(counts(pitch, {}, all)).toBe(false);
+  expect(counts(pitch, { base: 'groove' }, all)).toBe(true);
+  expect(counts(pitch, { base: 'cylinder' }, all)).toBe(false);
+  expect(counts(named('thickness_mm'), { base: 'groove' }, all)).toBe(true);
+  expect(counts(named('field_of_view_deg'), {}, all)).toBe(true);
+  expect(counts(named('field_of_view_deg'), { projection: 'orthographic' }, all)).toBe(false);
 });

@@ -67,6 +67,15 @@ export function byGroup(entries: readonly Entry[]): ReadonlyMap<string, readonly
 
 export const defaultOf = ([, schema]: Entry): Json => schema.default ?? null;
 
+/** Whether a parameter counts with the other values: some belong to one choice only. */
+export function counts([, schema]: Entry, parameters: JsonObject, all: readonly Entry[]): boolean {
+  const choice = schema['x-only-with'];
+  if (choice === undefined) return true;
+  const declared = all.find(([name]) => name === choice.parameter);
+  const value = parameters[choice.parameter] ?? (declared ? defaultOf(declared) : null);
+  return typeof value === 'string' && choice.values.includes(value);
+}
+
 export const isChanged = (parameters: JsonObject, entry: Entry): boolean => {
   const value = parameters[entry[0]];
   return value !== undefined && !jsonEqual(value, defaultOf(entry));

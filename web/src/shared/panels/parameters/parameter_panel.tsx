@@ -5,7 +5,7 @@ import { useId, useState } from 'preact/hooks';
 import type { JsonObject, Operation, PresetList } from '../../../jobs/contract';
 import { Icon } from '../../../ui';
 import type { Entry } from './find_parameters';
-import { groupOf, hasControl, isChanged } from './find_parameters';
+import { counts, groupOf, hasControl, isChanged } from './find_parameters';
 import { FoundParameters, ParameterSearch, useParameterSearch } from './parameter_search';
 import type { ParameterValues } from './parameter_control';
 import { ParameterControl } from './parameter_control';
@@ -48,7 +48,10 @@ export function ParameterPanel(props: ParameterPanelProps) {
   );
 }
 
-function Groups({ entries, ...props }: ParameterPanelProps & { readonly entries: readonly Entry[] }) {
+function Groups({ entries: all, ...props }: ParameterPanelProps & { readonly entries: readonly Entry[] }) {
+  const entries = all.filter(
+    (entry) => counts(entry, props.parameters, all) || props.errors[entry[0]] !== undefined,
+  );
   const plain = entries.filter(([, schema]) => !schema['x-advanced']);
   const advanced = entries.filter(([, schema]) => schema['x-advanced']);
   const groups = new Map<string, Entry[]>(Object.keys(props.groupHead ?? {}).map((title) => [title, []]));

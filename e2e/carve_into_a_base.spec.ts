@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A relief worked into another surface than a flat plate, up to the mill that carves it.
+import { chip, dialog, homeIt, practise, startButton } from './machine_room';
+import { backend, expect, openSample, solve, strip, test } from './page';
+
+test.skip(backend !== 'wasm', 'the page does the same with the worker');
+
+test('a V groove is carved on a practice mill', async ({ page }) => {
+  test.setTimeout(420_000);
+  await openSample(page);
+  const field = (name: string) => page.getByRole('textbox', { name, exact: true });
+  const set = async (name: string, value: string) => {
+    await field(name).fill(value);
+    await field(name).press('Enter');
+  };
+  // What belongs to a base that is not flat is offered with it.
+  await expect(field('Depth of the base')).toBeHidden();
+  await page.getByRole('combobox', { name: 'Shape of the base' }).selectOption('V groove');
+  await expect(field('Depth of the base')).toBeVisible();
+  for (const [name, value] of [
+    ['Width', '40'],
+    ['Thickness', '1'],
+    ['Carve into the base', '2'],
+    ['Depth of the base', '8'],
+  ] as const)
+    await set(name, value);
+  await solve(page);
+  await page.getByRole('button', { name: 'Send to a machine', exact: true }).click();
+  await expect(page.locator('.profile-button')).toHaveText('Practice mill');
+  // From 2 mm below the bottom of the groove to 1 mm above the plate.
+  await expect(field('Depth')).toHaveValue('11.0');
+  await page.getByRole('button', { name: 'Make the job', exact: true }).click();
+  await expect(strip(page, 'Job ready')).toBeVisible({ timeout: 150_000 });
+  await expect(page.getByRole('region', { name: 'What is carved' })).toContainText(
+    /Size40\.0 × 40\.0 × 1\d\.\d+\smm/,
+  );
+  await practise(page);
+  await homeIt(page);
+  await page.getByRole('button', { name: 'Move the tool down' }).focus();
+  await page.keyboard.press('Shift+PageDown');
+  await expect(chip(page)).toHaveText('Moving');
+  await expect(chip(page)).toHaveText('Ready');
+  await startButton(page).click();
+  await dialog(page)
+    .getByRole('radio', { name: /^Set z to the stock’s top here/ })
+    .check();
+  await dialog(page)
+    .getByRole('button', { name: /^Start with the spindle on/ })
+    .click();
+  await expect(chip(page)).toHaveText('Working');
+  await page.getByRole('radio', { name: 'Fastest', exact: true }).click();
+  await expect(strip(page, / is done$/)).toBeVisible({ timeout: 150_000 });
+});

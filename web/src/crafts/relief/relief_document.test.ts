@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+import { expect, it } from 'vitest';
+import { newDocument } from '../../project/document';
+import type { CraftResult } from '../../shared/session/craft_document';
+import { subjectOf } from '../../shared/session/craft_document';
+import { baseInputs, currentResult, relief, takeBase } from './relief_document';
+
+const blob = (digit: string) => ({ blob: digit.repeat(64), bytes: 1, media_type: 'x' });
+const file = { file_name: 'wall.stl', file: blob('b') };
+const start = relief
+  .command({ label: 'Set' }, () => ({
+    parameters: { base: 'groove', width_mm: 80 },
+  }))
+  .apply(newDocument('', '', 0));
+
+it('a base from a file takes the place of the built-in shapes, and goes again', () => {
+  const withFile = relief.of(takeBase(file).apply(start));
+  expect(withFile).toMatchObject({ base: file, parameters: { width_mm: 80 } });
+  expect(baseInputs(withFile)).toEqual({ base_mesh: { sha256: 'b'.repeat(64), file_name: 'wall.stl' } });
+  const without = relief.of(takeBase(null).apply(takeBase(file).apply(start)));
+  expect(without.base).toBeNull();
+  expect(baseInputs(without)).toEqual({});
+});
+
+it('a result made on one base is not that of another', () => {
+  const document = relief.of(start);
+  const on = (base: typeof file | null) => subjectOf(blob('a'), 'mesh', baseInputs({ ...document, base }));
+  const made = { id: 'one', mesh: on(file).key, parameters: document.parameters } as CraftResult;
+  const results = { ...document, results: [made] };
+  expect(currentResult(results, on(file))).toBe(made);
+  expect(currentResult(results, on(null))).toBeNull();
+  expect(currentResult(results, null)).toBeNull();
+});
+
+it('a project of an earlier version has no base', () => {
+  const { base: _, ...old } = relief.of(start);
+  const document = { ...start, crafts: { relief: old as never } };
+  expect(relief.of(document).base).toBeNull();
+});

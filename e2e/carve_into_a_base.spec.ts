@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A relief worked into another surface than a flat plate, up to the mill that carves it.
 import { chip, dialog, homeIt, practise, startButton } from './machine_room';
-import { backend, expect, openSample, solve, strip, test } from './page';
+import { backend, expect, fileOf, openSample, solve, strip, test } from './page';
 
 test.skip(backend !== 'wasm', 'the page does the same with the worker');
 
@@ -50,4 +50,31 @@ test('a V groove is carved on a practice mill', async ({ page }) => {
   await expect(chip(page)).toHaveText('Working');
   await page.getByRole('radio', { name: 'Fastest', exact: true }).click();
   await expect(strip(page, / is done$/)).toBeVisible({ timeout: 150_000 });
+});
+
+test('a base from a file takes the place of the built-in shapes, and says where it ends', async ({
+  page,
+}) => {
+  await openSample(page);
+  /** A tilted square, `half_mm` in each direction from the middle. */
+  const plane = (half_mm: number) =>
+    fileOf(
+      'wall.obj',
+      [-1, 1]
+        .flatMap((y) => [-1, 1].map((x) => `v ${x * half_mm} ${y * half_mm} ${0.1 * x * half_mm}`))
+        .concat('f 1 2 4 3')
+        .join('\n'),
+    );
+  const file = page.getByLabel('File of the base');
+  await file.setInputFiles(plane(200));
+  await expect(page.getByText('wall.obj')).toBeVisible();
+  await expect(page.getByRole('combobox', { name: 'Shape of the base' })).toBeHidden();
+  await expect(strip(page, 'Preview up to date')).toBeVisible();
+  await file.setInputFiles(plane(20));
+  await expect(
+    page.getByText(/The base ends before the model does: [\d,]+ of [\d,]+ vertices/),
+  ).toBeVisible();
+  await page.getByRole('button', { name: 'Remove', exact: true }).click();
+  await expect(strip(page, 'Preview up to date')).toBeVisible();
+  await expect(page.getByRole('combobox', { name: 'Shape of the base' })).toBeVisible();
 });

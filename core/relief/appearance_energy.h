@@ -8,7 +8,7 @@
 // holds without cancellation for every kappa, and kappa = 0 is the orthographic limit. E is the same number
 // as in the thesis, free of units: it does not change with the scale of the model.
 #include "numerics/sparse/sparse_cholesky.h"
-#include "relief/view_frame.h"
+#include "relief/view/view_frame.h"
 
 namespace formwright {
 

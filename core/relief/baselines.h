@@ -3,13 +3,13 @@
 // What a maker would get without the optimisation, in the same slab: to show beside, and to be honest.
 #include "base/context.h"
 #include "relief/base/depth_bounds.h"
-#include "relief/view_frame.h"
-#include "relief/visibility.h"
+#include "relief/view/view_frame.h"
+#include "relief/view/visibility.h"
 
 namespace formwright {
 
-/// Depth compressed linearly along the rays so that the bounded vertices just fill their bounds: the nearest of them comes to its
-/// nearest depth, the farthest to its farthest. The others follow the same line. Lengths are normalised.
+/// Depth compressed linearly along the rays so that the bounded vertices just fill their bounds: the nearest of them
+/// comes to its nearest depth, the farthest to its farthest. The others follow the same line. Lengths are normalised.
 Eigen::VectorXd linear_compression(const ViewFrame& frame, const DepthBounds& bounds);
 
 struct GradientCompressionOptions {

@@ -37,9 +37,11 @@ Positions on_grid(const Positions& moved, const HeightMap& map, double size_mm) 
   return G;
 }
 
-/// Raises the map's nodes to the triangles over them; heights are first limited to [lowest, highest].
+/// Raises the map's nodes to the triangles over them; heights are first limited to [lowest, highest]. `covers`: (face,
+/// row, column) -> bool.
+template <class Covers>
 void raise_to_envelope(HeightMap& map, const Positions& G, const Triangles& F, double lowest, double highest,
-                       Context& context) {
+                       const Covers& covers, Context& context) {
   for (Eigen::Index f = 0; f < F.rows(); ++f) {
     if (f % 65536 == 0) context.check_cancelled();
     const Vec3 a = G.row(F(f, 0)).transpose(), b = G.row(F(f, 1)).transpose(), c = G.row(F(f, 2)).transpose();
@@ -54,11 +56,25 @@ void raise_to_envelope(HeightMap& map, const Positions& G, const Triangles& F, d
         const double wb = ((x - a.x()) * (c.y() - a.y()) - (y - a.y()) * (c.x() - a.x())) / doubled;
         const double wc = ((b.x() - a.x()) * (y - a.y()) - (b.y() - a.y()) * (x - a.x())) / doubled;
         const double wa = 1 - wb - wc;
-        if (wa < -1e-9 || wb < -1e-9 || wc < -1e-9) continue;
+        if (wa < -1e-9 || wb < -1e-9 || wc < -1e-9 || !covers(f, y, x)) continue;
         const double height = std::clamp(wa * a.z() + wb * b.z() + wc * c.z(), lowest, highest);
         map.at(y, x) = std::max(map.at(y, x), static_cast<float>(height));
       }
   }
+}
+
+/// Of a node in the plate's middle's axes, mm.
+double x_of(const HeightMap& map, int column) { return column * map.pitch_x_mm - 0.5 * map.width_mm(); }
+double y_of(const HeightMap& map, int row) { return row * map.pitch_y_mm - 0.5 * map.depth_mm(); }
+
+/// The band of every node.
+std::vector<int> node_bands(const HeightMap& map, const BaseBands& bands, double size_mm) {
+  std::vector<int> band;
+  band.reserve(map.height_mm.size());
+  for (int row = 0; row < map.rows; ++row)
+    for (int column = 0; column < map.columns; ++column)
+      band.push_back(bands.of_point(x_of(map, column) / size_mm, y_of(map, row) / size_mm));
+  return band;
 }
 
 /// Heights of the base at the map's nodes, mm; NaN beyond its edge.
@@ -68,9 +84,10 @@ std::vector<float> base_heights(const HeightMap& map, const BaseSurface& base, d
     context.check_cancelled();
     for (std::size_t row = begin; row < end; ++row)
       for (int column = 0; column < map.columns; ++column) {
-        const double x_mm = column * map.pitch_x_mm - 0.5 * map.width_mm(),
-                     y_mm = static_cast<double>(row) * map.pitch_y_mm - 0.5 * map.depth_mm();
-        const std::optional<double> depth = base.depth_at(x_mm / size_mm, y_mm / size_mm);
+        const double x = x_of(map, column) / size_mm, y = y_of(map, static_cast<int>(row)) / size_mm;
+        // On a border a ray would meet the wall's upper edge, whichever band is meant.
+        const std::optional<double> depth =
+            base.bands() != nullptr ? base.bands()->depth(base.bands()->of_point(x, y)) : base.depth_at(x, y);
         heights[row * static_cast<std::size_t>(map.columns) + static_cast<std::size_t>(column)] =
             depth ? static_cast<float>(-size_mm * *depth) : NAN;
       }
@@ -79,7 +96,7 @@ std::vector<float> base_heights(const HeightMap& map, const BaseSurface& base, d
 }
 
 /// The map with the envelope at the covered nodes, -infinity elsewhere, and its limits.
-HeightMap envelope_over(const Positions& moved, const Triangles& F, double size_mm, PlateSize plate, double pixel_mm,
+HeightMap envelope_over(const CoveringMesh& mesh, double size_mm, PlateSize plate, double pixel_mm,
                         const AllowedSpace& space, Context& context) {
   HeightMap map = empty_map(plate, pixel_mm);
   const auto range = space.base.depth_range(0.5 * plate.width_mm / size_mm, 0.5 * plate.height_mm / size_mm);
@@ -87,7 +104,14 @@ HeightMap envelope_over(const Positions& moved, const Triangles& F, double size_
   map.floor_mm = -size_mm * largest - space.below_mm;
   map.top_mm = -size_mm * least + space.above_mm;
   std::ranges::fill(map.height_mm, -INFINITY);
-  raise_to_envelope(map, on_grid(moved, map, size_mm), F, map.floor_mm, map.top_mm, context);
+  std::vector<int> band;
+  if (mesh.band != nullptr && space.base.bands() != nullptr) band = node_bands(map, *space.base.bands(), size_mm);
+  const auto covers = [&](Eigen::Index face, int row, int column) {
+    return band.empty() || (*mesh.band)[static_cast<std::size_t>(face)] ==
+                               band[static_cast<std::size_t>(row) * static_cast<std::size_t>(map.columns) +
+                                    static_cast<std::size_t>(column)];
+  };
+  raise_to_envelope(map, on_grid(mesh.V, map, size_mm), mesh.F, map.floor_mm, map.top_mm, covers, context);
   return map;
 }
 
@@ -98,7 +122,8 @@ HeightMap make_height_map(const Positions& moved, const Triangles& F, double siz
   HeightMap map = empty_map(plate, pixel_mm);
   map.top_mm = top_mm;
   const Positions G = on_grid(moved, map, size_mm);
-  raise_to_envelope(map, G, F, 0, top_mm, context);
+  raise_to_envelope(
+      map, G, F, 0, top_mm, [](Eigen::Index, int, int) { return true; }, context);
   for (Eigen::Index i = 0; i < G.rows(); ++i)
     if (G(i, 2) > top_mm * (1 - 1e-6)) {
       const int x = std::clamp(static_cast<int>(std::lround(G(i, 0))), 0, map.columns - 1);
@@ -108,11 +133,11 @@ HeightMap make_height_map(const Positions& moved, const Triangles& F, double siz
   return map;
 }
 
-HeightMap make_height_map(const Positions& moved, const Triangles& F, double size_mm, PlateSize plate, double pixel_mm,
+HeightMap make_height_map(const CoveringMesh& mesh, double size_mm, PlateSize plate, double pixel_mm,
                           const AllowedSpace& space, Context& context) {
   if (space.base.is_flat() && space.below_mm == 0)
-    return make_height_map(moved, F, size_mm, plate, pixel_mm, space.above_mm, context);
-  HeightMap map = envelope_over(moved, F, size_mm, plate, pixel_mm, space, context);
+    return make_height_map(mesh.V, mesh.F, size_mm, plate, pixel_mm, space.above_mm, context);
+  HeightMap map = envelope_over(mesh, size_mm, plate, pixel_mm, space, context);
   const std::vector<float> base = base_heights(map, space.base, size_mm, context);
   const auto floor = static_cast<float>(map.floor_mm);
   for (std::size_t i = 0; i < base.size(); ++i) {
@@ -128,9 +153,9 @@ HeightMap make_height_map(const Positions& moved, const Triangles& F, double siz
   return map;
 }
 
-HeightMap make_bed_map(const Positions& moved, const Triangles& F, double size_mm, PlateSize plate, double pixel_mm,
+HeightMap make_bed_map(const CoveringMesh& mesh, double size_mm, PlateSize plate, double pixel_mm,
                        const AllowedSpace& space, Context& context) {
-  HeightMap map = envelope_over(moved, F, size_mm, plate, pixel_mm, space, context);
+  HeightMap map = envelope_over(mesh, size_mm, plate, pixel_mm, space, context);
   const std::vector<float> base = base_heights(map, space.base, size_mm, context);
   const auto floor = static_cast<float>(map.floor_mm);
   for (std::size_t i = 0; i < base.size(); ++i) {

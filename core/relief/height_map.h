@@ -5,7 +5,7 @@
 
 #include "base/context.h"
 #include "relief/base/base_surface.h"
-#include "relief/view_frame.h"
+#include "relief/view/view_frame.h"
 
 namespace formwright {
 
@@ -45,18 +45,25 @@ struct AllowedSpace {
   double above_mm, below_mm;
 };
 
+/// The mesh over any base, for the functions below.
+struct CoveringMesh {
+  const Positions& V;  // view coordinates
+  const Triangles& F;
+  const std::vector<int>* band = nullptr;  // of each triangle, which covers nodes of this band only; null: all
+};
+
 /// The same over any base: the envelope where the mesh covers a node, kept within the allowed space there, and the
 /// base elsewhere. Nodes that the base does not reach are on the floor.
-HeightMap make_height_map(const Positions& moved, const Triangles& F, double size_mm, PlateSize plate, double pixel_mm,
+HeightMap make_height_map(const CoveringMesh& mesh, double size_mm, PlateSize plate, double pixel_mm,
                           const AllowedSpace& space, Context& context);
 
 /// The base alone, as deep as the relief may be carved where the mesh covers it: what a picture shows behind the mesh.
-HeightMap make_bed_map(const Positions& moved, const Triangles& F, double size_mm, PlateSize plate, double pixel_mm,
+HeightMap make_bed_map(const CoveringMesh& mesh, double size_mm, PlateSize plate, double pixel_mm,
                        const AllowedSpace& space, Context& context);
 
-/// A watertight solid: the height field on a plate `plate_mm` thick below its floor, x right, y up, z towards the viewer,
-/// lower left corner of the plate's back at the origin. Flat and smooth parts are covered by larger triangles: a
-/// right-triangulated irregular network (Evans, Kirkpatrick, Townsend 2001) within `tolerance_mm` of every node.
+/// A watertight solid: the height field on a plate `plate_mm` thick below its floor, x right, y up, z towards the
+/// viewer, lower left corner of the plate's back at the origin. Flat and smooth parts are covered by larger triangles:
+/// a right-triangulated irregular network (Evans, Kirkpatrick, Townsend 2001) within `tolerance_mm` of every node.
 TriangleMesh make_solid(const HeightMap& map, double plate_mm, double tolerance_mm, Context& context);
 
 }  // namespace formwright

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 // The true normal error, eqs. (3.2) and (3.5) as an angle, before any linearisation.
-#include "relief/view_frame.h"
-#include "relief/visibility.h"
+#include "relief/view/view_frame.h"
+#include "relief/view/visibility.h"
 
 namespace formwright {
 

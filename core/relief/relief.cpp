@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "geometry/mesh/adjacency.h"
@@ -27,7 +28,8 @@ BoundedQpConstraints constraints_of(const ViewFrame& frame, const DepthBounds& b
   c.lower = Eigen::VectorXd::Constant(n, -infinity);
   c.upper = Eigen::VectorXd::Constant(n, infinity);
   c.lower_slope = c.upper_slope = Eigen::VectorXd::Ones(n);
-  c.group.assign(static_cast<std::size_t>(n), 0);
+  c.group = bounds.group;
+  c.group_count = bounds.groups;
   c.gauge = Eigen::VectorXd::Constant(n, 1.0 / static_cast<double>(n));
   for (int i = 0; i < n; ++i) {
     if (!bounds.bounded[static_cast<std::size_t>(i)]) continue;
@@ -39,18 +41,45 @@ BoundedQpConstraints constraints_of(const ViewFrame& frame, const DepthBounds& b
   return c;
 }
 
-/// Divides the common scale out again, eq. (3.11) at mu = 1. Where the bounds leave it free, the relief is put
-/// back against its plate: the smallest m, as the term alpha |mu|^2 of eq. (3.14) would choose.
-Eigen::VectorXd settled(const ViewFrame& frame, const BoundedQpConstraints& c, const BoundedQpSolution& qp) {
-  double minimum = -infinity, maximum = infinity;
+/// The scale of each group, eq. (3.11), as m with mu = 1 + kappa m. Where the bounds leave it free, the relief is put
+/// back against its base: the smallest m, as the term alpha |mu|^2 of eq. (3.14) would choose.
+Eigen::VectorXd scales(const BoundedQpConstraints& c, const BoundedQpSolution& qp) {
+  Eigen::VectorXd minimum = Eigen::VectorXd::Constant(c.group_count, -infinity), maximum = -minimum;
   for (Eigen::Index i = 0; i < qp.u.size(); ++i) {
     if (std::isinf(c.upper[i])) continue;
-    minimum = std::max(minimum, (qp.u[i] - c.upper[i]) / c.upper_slope[i]);
-    maximum = std::min(maximum, (qp.u[i] - c.lower[i]) / c.lower_slope[i]);
+    const int g = c.group[static_cast<std::size_t>(i)];
+    minimum[g] = std::max(minimum[g], (qp.u[i] - c.upper[i]) / c.upper_slope[i]);
+    maximum[g] = std::min(maximum[g], (qp.u[i] - c.lower[i]) / c.lower_slope[i]);
   }
-  const double m = minimum < maximum ? minimum : 0.5 * (minimum + maximum);
-  Eigen::VectorXd u = (qp.u.array() - m) / (1 + frame.kappa * m);
+  Eigen::VectorXd m = Eigen::VectorXd::Zero(c.group_count);
+  for (int g = 0; g < c.group_count; ++g)
+    if (std::isfinite(minimum[g])) m[g] = minimum[g] < maximum[g] ? minimum[g] : 0.5 * (minimum[g] + maximum[g]);
+  return m;
+}
+
+/// Divides the scales out again: eq. (3.11) at mu = 1.
+Eigen::VectorXd settled(const ViewFrame& frame, const BoundedQpConstraints& c, const Eigen::VectorXd& joint,
+                        const Eigen::VectorXd& m) {
+  Eigen::VectorXd u(joint.size());
+  for (Eigen::Index i = 0; i < u.size(); ++i) {
+    const double own = m[c.group[static_cast<std::size_t>(i)]];
+    u[i] = (joint[i] - own) / (1 + frame.kappa * own);
+  }
   return u.cwiseMax(c.lower).cwiseMin(c.upper);
+}
+
+/// Whether a depth-order row can hold within the bounds. Over a triangle the base may bend by more than the relief is
+/// thick: a row that is interpolated there may contradict the bounds, which count more. On steps the rows within one
+/// step stay: their bounds are one slab.
+bool can_hold(const InequalityRow& row, const DepthBounds& bounds, const BoundedQpConstraints& c) {
+  double best = 0;
+  for (std::size_t k = 0; k < row.index.size(); ++k) {
+    const int i = row.index[k];
+    const auto at = static_cast<std::size_t>(i);
+    if (bounds.group[at] != bounds.group[static_cast<std::size_t>(row.index.front())]) return false;
+    best += row.coefficient[k] * (row.coefficient[k] > 0 ? c.upper[i] : c.lower[i]);
+  }
+  return !(best < row.bound);
 }
 
 double order_violation(const std::vector<InequalityRow>& rows, const Eigen::VectorXd& u) {
@@ -121,15 +150,37 @@ ReliefSolver::ReliefSolver(const TriangleMesh& mesh, const ReliefOptions& option
   seconds_factorise_ = watch.seconds();
 }
 
+/// Rows that contradict the bounds only together are left out as a whole, where the base is not flat.
+BoundedQpSolution ReliefSolver::solve_on_base(BoundedQpConstraints& constraints, const BoundedQpOptions& options,
+                                              bool flat, Context& context) {
+  try {
+    return qp_.solve(constraints, options, context);
+  } catch (const Error& error) {
+    if (flat || constraints.rows.empty() || error.code() != ErrorCode::could_not_solve) throw;
+  }
+  constraints.rows.clear();
+  return qp_.solve(constraints, options, context);
+}
+
 Relief ReliefSolver::solve(const ReliefOptions& options, const BaseSurface& base, Context& context) {
   const DepthBounds bounds = depth_bounds(frame_, visibility_, base, options, context);
   BoundedQpConstraints constraints = constraints_of(frame_, bounds);
-  // Lent, not copied: at 300k vertices the rows are tens of megabytes.
-  constraints.rows.swap(order_rows_);
-  struct Return {
+  // On a plate lent, not copied: at 300k vertices the rows are tens of megabytes.
+  const bool lent = base.is_flat();
+  struct Lent {
     std::vector<InequalityRow>&from, &to;
-    ~Return() { to.swap(from); }
-  } give_back{constraints.rows, order_rows_};
+    bool lent;
+    Lent(std::vector<InequalityRow>& rows, std::vector<InequalityRow>& borrower, bool is_lent)
+        : from(rows), to(borrower), lent(is_lent) {
+      if (lent) from.swap(to);
+    }
+    ~Lent() {
+      if (lent) from.swap(to);
+    }
+  } rows(order_rows_, constraints.rows, lent);
+  if (!lent)
+    std::ranges::copy_if(order_rows_, std::back_inserter(constraints.rows),
+                         [&](const InequalityRow& row) { return can_hold(row, bounds, constraints); });
 
   Relief relief;
   BoundedQpOptions qp_options;
@@ -137,14 +188,20 @@ Relief ReliefSolver::solve(const ReliefOptions& options, const BaseSurface& base
   qp_options.violation_tolerance = 1e-9 * (options.thickness_mm + options.carve_depth_mm) / options.width_mm;
   {
     const auto span = context.span(0, 0.9, "Fitting into the thickness");
-    relief.qp = qp_.solve(constraints, qp_options, context);
+    relief.qp = solve_on_base(constraints, qp_options, lent, context);
   }
   context.progress(0.9, "Comparing normals");
-  relief.u = settled(frame_, constraints, relief.qp);
+  const Eigen::VectorXd m = scales(constraints, relief.qp);
+  relief.u = settled(frame_, constraints, relief.qp.u, m);
   relief.moved = frame_.moved(relief.u);
-  relief.energy = (*energy_)(relief.u);
-  relief.normal_error = normal_error(frame_, F_, visibility_, relief.moved);
-  const Eigen::VectorXd linear = linear_compression(frame_, bounds);
+  // In steps, the parts look from the viewpoint as the surface does in one piece.
+  const bool in_steps = bounds.groups > 1;
+  const Eigen::VectorXd& looked_at = in_steps ? relief.qp.u : relief.u;
+  relief.energy = (*energy_)(looked_at);
+  relief.normal_error = normal_error(frame_, F_, visibility_, in_steps ? frame_.moved(looked_at) : relief.moved);
+  if (in_steps) relief.pieces = cut_into_bands(frame_, F_, relief.qp.u, m, bounds, *base.bands(), context);
+  const Eigen::VectorXd linear = linear_compression(
+      frame_, in_steps ? depth_bounds(frame_, visibility_, BaseSurface(), options, context) : bounds);
   relief.energy_linear = (*energy_)(linear);
   relief.normal_error_linear = normal_error(frame_, F_, visibility_, frame_.moved(linear));
 
@@ -164,6 +221,7 @@ Relief ReliefSolver::solve(const ReliefOptions& options, const BaseSurface& base
   }
   relief.vertices_beyond_base = bounds.missed;
   relief.order_rows = static_cast<int>(constraints.rows.size());
+  if (!lent) relief.order_rows_left_out = static_cast<int>(order_rows_.size() - constraints.rows.size());
   relief.order_violation_max_mm = size * order_violation(constraints.rows, relief.u);
   if (!relief.u.allFinite())
     throw Error(ErrorCode::could_not_solve, "",

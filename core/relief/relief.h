@@ -9,10 +9,11 @@
 #include "geometry/mesh/triangle_mesh.h"
 #include "numerics/qp/bounded_qp.h"
 #include "relief/base/base_surface.h"
+#include "relief/base/relief_pieces.h"
 #include "relief/normal_error.h"
-#include "relief/relief_options.h"
-#include "relief/view_frame.h"
-#include "relief/visibility.h"
+#include "relief/view/relief_options.h"
+#include "relief/view/view_frame.h"
+#include "relief/view/visibility.h"
 
 namespace formwright {
 
@@ -27,8 +28,10 @@ struct Relief {
   double bound_violation_max_mm = 0;  // over all bounded vertices, of the final positions
   double order_violation_max_mm = 0;  // over all depth-order rows
   int order_rows = 0;
+  int order_rows_left_out = 0;   // those that the bounds contradict
   int vertices_beyond_base = 0;  // free, because their rays miss the base
-  BoundedQpSolution qp;  // statistics; qp.u is in the gauge of mean s = 1
+  ReliefPieces pieces;           // on a base in steps; else empty
+  BoundedQpSolution qp;          // statistics; qp.u is in the gauge of mean s = 1
 };
 
 /// Everything that depends on the mesh and the viewpoint alone, the factorisation included: other bounds
@@ -57,6 +60,9 @@ class ReliefSolver {
   double memory_mb() const;
 
  private:
+  BoundedQpSolution solve_on_base(BoundedQpConstraints& constraints, const BoundedQpOptions& options, bool flat,
+                                  Context& context);
+
   ViewFrame frame_;
   Triangles F_;
   Visibility visibility_;

@@ -79,6 +79,35 @@ TEST_CASE("BaseShape.IsMetByEveryRay") {
     }
 }
 
+TEST_CASE("BaseBands.RaysMeetTheStepOrTheWallBeforeIt") {
+  for (const Projection projection : {Projection::perspective, Projection::orthographic}) {
+    ReliefOptions options = on(BaseShape::stairs, projection);
+    options.base_steps = 3;
+    options.base_turn_deg = 90;
+    const ViewFrame frame = make_view_frame(test::icosphere(3), options);
+    const auto bands = base_bands(options, frame);
+    REQUIRE(bands.has_value());
+    CHECK(bands->depth(0) == 0);
+    CHECK_THAT(bands->depth(2), WithinAbs(0.2, 1e-15));
+    const BaseSurface rays(base_shape(options, frame));  // the mesh alone, without what the bands say of it
+    int on_walls = 0;
+    for (Eigen::Index i = 0; i < frame.P.rows(); ++i) {
+      const Vec3 p = frame.P.row(i).transpose();
+      const double t = bands->on_plate(frame, p);
+      if (std::abs(t - bands->border_on_plate(frame, 0)) < 1e-9 ||
+          std::abs(t - bands->border_on_plate(frame, 1)) < 1e-9)
+        continue;  // through an edge: either side
+      const int band = bands->of_ray(frame, p);
+      const double depth = rays.depth_on_ray(frame, i, 0).value();
+      const bool is_on_step = std::abs(depth - bands->depth(band)) < 1e-12;
+      const bool is_on_wall = band > 0 && depth > bands->depth(band - 1) && depth < bands->depth(band) && t < 0;
+      CHECK((is_on_step || is_on_wall));
+      on_walls += !is_on_step;
+    }
+    CHECK((on_walls > 0) == (projection == Projection::perspective));
+  }
+}
+
 TEST_CASE("BaseShape.ReachesAsDeepAsItSays") {
   for (const BaseShape shape : {BaseShape::cylinder, BaseShape::wave, BaseShape::groove}) {
     const ReliefOptions options = on(shape);

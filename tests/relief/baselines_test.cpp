@@ -27,7 +27,11 @@ Scene scene(const TriangleMesh& mesh, Projection projection) {
 
 DepthBounds slab(const Scene& s, double thickness, const std::vector<char>& bounded) {
   const Eigen::Index n = s.frame.P.rows();
-  return {Eigen::VectorXd::Constant(n, -thickness), Eigen::VectorXd::Zero(n), bounded, 0};
+  DepthBounds bounds;
+  bounds.nearest = Eigen::VectorXd::Constant(n, -thickness);
+  bounds.farthest = Eigen::VectorXd::Zero(n);
+  bounds.bounded = bounded;
+  return bounds;
 }
 
 TEST_CASE("LinearCompression.FillsTheSlabAndKeepsTheOrder") {

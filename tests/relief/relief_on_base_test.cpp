@@ -3,6 +3,7 @@
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/matchers/catch_matchers_floating_point.hpp>
 
+#include <array>
 #include <cmath>
 
 #include "geometry/mesh/adjacency.h"
@@ -63,18 +64,18 @@ TriangleMesh plane_mm(double half_mm, double height_mm, double slope = 0) {
 TEST_CASE("ReliefOnBase.EveryVertexIsWithinItsBounds") {
   for (const Projection projection : {Projection::perspective, Projection::orthographic}) {
     const Solved s = solved(test::icosphere(4), groove(projection));
-    double most_above = -1e9, most_below = -1e9;
+    double max_above = -1e9, max_below = -1e9;
     for (Eigen::Index i = 0; i < s.relief.moved.rows(); ++i) {
       CHECK(s.relief.lambda_mm[i] >= s.relief.lambda_min_mm[i]);
       CHECK(s.relief.lambda_mm[i] <= s.relief.lambda_max_mm[i]);
       const double above = -100 * s.relief.moved(i, 2) - groove_mm(100 * s.relief.moved(i, 0));
-      most_above = std::max(most_above, above);
-      most_below = std::max(most_below, -above);
+      max_above = std::max(max_above, above);
+      max_below = std::max(max_below, -above);
     }
     CHECK(s.relief.bound_violation_max_mm <= 0);
     // The space is used up to both limits, and not left.
-    CHECK_THAT(most_above, WithinAbs(1, 1e-9));
-    CHECK_THAT(most_below, WithinAbs(6, 1e-9));
+    CHECK_THAT(max_above, WithinAbs(1, 1e-9));
+    CHECK_THAT(max_below, WithinAbs(6, 1e-9));
     CHECK(s.relief.vertices_beyond_base == 0);
   }
 }
@@ -84,7 +85,7 @@ TEST_CASE("ReliefOnBase.TheSolidStaysInTheAllowedSpace") {
   Context context;
   const AllowedSpace space{s.base, s.options.thickness_mm, s.options.carve_depth_mm};
   const PlateSize plate{120, 110};
-  const HeightMap map = make_height_map(s.relief.moved, s.F, 100, plate, 0.5, space, context);
+  const HeightMap map = make_height_map({s.relief.moved, s.F}, 100, plate, 0.5, space, context);
   CHECK_THAT(map.floor_mm, WithinAbs(-36, 1e-9));
   CHECK_THAT(map.top_mm, WithinAbs(1, 1e-9));
   int carved = 0, raised = 0;
@@ -116,11 +117,122 @@ TEST_CASE("ReliefOnBase.BesideTheModelIsTheBase") {
   const AllowedSpace space{base, 1, 0};
   const double exact = 100 * 100 * (5 + 30) - 0.5 * 80 * 30 * 100;
   for (const double pixel : {4.0, 2.0, 1.0}) {
-    const HeightMap map =
-        make_height_map(Positions(0, 3), Triangles(0, 3), 100, {100, 100}, pixel, space, context);
+    const HeightMap map = make_height_map({Positions(0, 3), Triangles(0, 3)}, 100, {100, 100}, pixel, space, context);
     // The grid has nodes at the groove's bottom and at its edges: nothing but the rounding of heights is left.
     CHECK_THAT(signed_volume(make_solid(map, 5, 1e-9, context)), WithinRel(exact, 2e-6));
   }
+}
+
+ReliefOptions stairs(Projection projection, int steps, double depth_mm) {
+  ReliefOptions options;
+  options.width_mm = 100;
+  options.thickness_mm = 4;
+  options.base = BaseShape::stairs;
+  options.base_depth_mm = depth_mm;
+  options.base_steps = steps;
+  options.base_turn_deg = 90;
+  options.projection = projection;
+  return options;
+}
+
+Solved solved_on_stairs(const TriangleMesh& mesh, const ReliefOptions& options) {
+  Context context;
+  ReliefSolver solver(mesh, options, context);
+  const BaseSurface base(base_shape(options, solver.frame()), base_bands(options, solver.frame()));
+  return {options, base, solver.F(), solver.frame(), solver.solve(options, base, context)};
+}
+
+TEST_CASE("ReliefOnStairs.EachPieceStandsOnItsStep") {
+  for (const Projection projection : {Projection::perspective, Projection::orthographic}) {
+    const Solved s = solved_on_stairs(test::icosphere(4), stairs(projection, 4, 60));
+    const ReliefPieces& pieces = s.relief.pieces;
+    REQUIRE(pieces.band.size() >= static_cast<std::size_t>(s.F.rows()));
+    std::vector<int> band_of(static_cast<std::size_t>(pieces.V.rows()), -1);
+    for (Eigen::Index f = 0; f < pieces.F.rows(); ++f)
+      for (int k = 0; k < 3; ++k) {
+        int& band = band_of[static_cast<std::size_t>(pieces.F(f, k))];
+        REQUIRE((band == -1 || band == pieces.band[static_cast<std::size_t>(f)]));  // no vertex in two pieces
+        band = pieces.band[static_cast<std::size_t>(f)];
+      }
+    std::array<double, 4> nearest{9, 9, 9, 9}, farthest{-9, -9, -9, -9};
+    for (Eigen::Index i = 0; i < pieces.V.rows(); ++i) {
+      const auto band = static_cast<std::size_t>(band_of[static_cast<std::size_t>(i)]);
+      nearest[band] = std::min(nearest[band], pieces.V(i, 2));
+      farthest[band] = std::max(farthest[band], pieces.V(i, 2));
+    }
+    for (std::size_t k = 0; k < 4; ++k) {
+      const double step = 0.2 * static_cast<double>(k);
+      CHECK(nearest[k] >= step - 0.04 - 1e-12);
+      CHECK(farthest[k] <= step + 1e-12);
+    }
+    for (Eigen::Index i = 0; i < s.relief.u.size(); ++i) {
+      CHECK(s.relief.lambda_mm[i] >= s.relief.lambda_min_mm[i]);
+      CHECK(s.relief.lambda_mm[i] <= s.relief.lambda_max_mm[i]);
+    }
+  }
+}
+
+TEST_CASE("ReliefOnStairs.TheCutsKeepThePicture") {
+  // Every vertex stays on its ray, and the pieces cover the picture once: their areas there add up to that of the
+  // model.
+  for (const Projection projection : {Projection::perspective, Projection::orthographic}) {
+    const Solved s = solved_on_stairs(test::icosphere(3), stairs(projection, 5, 50));
+    const auto covered = [&](const Positions& V, const Triangles& F) {
+      double sum = 0;
+      for (Eigen::Index f = 0; f < F.rows(); ++f) {
+        Vec2 p[3];
+        for (int k = 0; k < 3; ++k) {
+          const Vec3 x = V.row(F(f, k)).transpose();
+          p[k] = x.head<2>() / (1 + s.frame.kappa * x.z());
+        }
+        sum +=
+            std::abs((p[1].x() - p[0].x()) * (p[2].y() - p[0].y()) - (p[1].y() - p[0].y()) * (p[2].x() - p[0].x())) / 2;
+      }
+      return sum;
+    };
+    CHECK_THAT(covered(s.relief.pieces.V, s.relief.pieces.F), WithinRel(covered(s.frame.P, s.F), 1e-9));
+    // New corners lie exactly on the borders.
+    for (int k = 0; k + 1 < s.base.bands()->count(); ++k) {
+      int on = 0;
+      for (Eigen::Index i = 0; i < s.relief.pieces.V.rows(); ++i)
+        on += std::abs(s.base.bands()->on_plate(s.frame, s.relief.pieces.V.row(i).transpose()) -
+                       s.base.bands()->border_on_plate(s.frame, k)) < 1e-12;
+      CHECK(on >= 16);
+    }
+  }
+}
+
+TEST_CASE("ReliefOnStairs.StepsOfOneHeightAreAPlate") {
+  // One group of bounds against several that may move by themselves: never worse, and nearly the same picture.
+  const TriangleMesh mesh = test::icosphere(3);
+  ReliefOptions flat = stairs(Projection::orthographic, 3, 1e-2);
+  flat.base = BaseShape::flat;
+  Context context;
+  ReliefSolver solver(mesh, flat, context);
+  const Relief plate = solver.solve(flat, context);
+  const Solved steps = solved_on_stairs(mesh, stairs(Projection::orthographic, 3, 1e-2));
+  CHECK(steps.relief.energy <= plate.energy * (1 + 1e-9));
+}
+
+TEST_CASE("ReliefOnStairs.TheSolidHasOneReliefAStep") {
+  const Solved s = solved_on_stairs(test::icosphere(4), stairs(Projection::perspective, 4, 60));
+  Context context;
+  const AllowedSpace space{s.base, 4, 0};
+  const CoveringMesh mesh{s.relief.pieces.V, s.relief.pieces.F, &s.relief.pieces.band};
+  const HeightMap map = make_height_map(mesh, 100, {100, 100}, 0.5, space, context);
+  int raised = 0;
+  for (int row = 0; row < map.rows; ++row)
+    for (int column = 0; column < map.columns; ++column) {
+      const double y_mm = row * map.pitch_y_mm - 50;
+      if (std::abs(y_mm / 25 - std::round(y_mm / 25)) < 1e-6) continue;  // on a border: either step
+      const int step = std::min(3, static_cast<int>(std::floor((y_mm + 50) / 25)));
+      const double above = static_cast<double>(map.at(row, column)) + 20 * step;
+      REQUIRE(above >= -1e-5);
+      REQUIRE(above <= 4 + 1e-5);
+      raised += above > 0.5;
+    }
+  CHECK(raised > 5000);
+  CHECK(Adjacency(make_solid(map, 3, 1e-3, context)).is_closed());
 }
 
 TEST_CASE("ReliefOnBase.AFlatBaseFromAFileIsThePlate") {

@@ -48,8 +48,8 @@ struct ParameterInfo {
   std::string old_name;  // still understood, in JSON and as a flag; "" where there is none
   ParameterKind kind = ParameterKind::number;
   bool advanced = false;
-  std::string only_with;                        // the choice that it belongs to; "" where it always counts
-  std::vector<std::string> only_with_choices;   // and the values of that choice with which it counts
+  std::string only_with;                          // the choice that it belongs to; "" where it always counts
+  std::vector<std::string> only_with_choices;     // and the values of that choice with which it counts
   double minimum = 0, maximum = 0;                // number, optional_number, integer; inclusive
   double slider_minimum = 0, slider_maximum = 0;  // the useful part of the range
   std::vector<std::string> choices, choice_labels;
@@ -87,8 +87,8 @@ struct Parameter {
     copy.old_name_ = old_name;
     return copy;
   }
-  /// It counts only while another parameter, a choice, has one of these values, at most four; else controls hide it. It is
-  /// valid all the same.
+  /// It counts only while another parameter, a choice, has one of these values, at most four; else controls hide it. It
+  /// is valid all the same.
   template <class... Choices>
   constexpr Parameter only_with(std::string_view choice, Choices... values) const {
     Parameter copy = *this;
@@ -125,8 +125,8 @@ constexpr auto inherit_parameters(const std::tuple<Parameters...>& base) {
                                  p.minimum,        p.maximum,
                                  p.help,           p.group_,
                                  p.advanced_,      p.slider_minimum,
-                                 p.slider_maximum, p.old_name_, p.only_with_,
-                                 p.only_with_choices_};
+                                 p.slider_maximum, p.old_name_,
+                                 p.only_with_,     p.only_with_choices_};
   };
   return std::apply([&](const auto&... p) { return std::tuple{lift(p)...}; }, base);
 }

@@ -78,16 +78,49 @@ TriangleMesh swept(const Profile& profile, double reach, double turn_deg) {
   return mesh;
 }
 
-}  // namespace
+/// What the shape has to cover, and how wide the plate is across it; normalised.
+struct Extent {
+  double depth, reach, half_across;
+};
 
-TriangleMesh base_shape(const ReliefOptions& options, const ViewFrame& frame) {
+Extent extent_of(const ReliefOptions& options, const ViewFrame& frame) {
   const double size = options.width_mm, depth = options.base_depth_mm / size;
   const double half_x = 0.5 + options.margin_mm / size, half_y = 0.5 * frame.image_height + options.margin_mm / size;
   // Rays spread behind the plate's front.
   const double spread = 1 + frame.kappa * (depth + options.carve_depth_mm / size);
-  const double corner = std::hypot(half_x, half_y), reach = 1.01 * spread * corner;
   const double angle = options.base_turn_deg * std::numbers::pi / 180;
-  const double half_across = std::abs(std::cos(angle)) * half_x + std::abs(std::sin(angle)) * half_y;
+  return {depth, 1.01 * spread * std::hypot(half_x, half_y),
+          std::abs(std::cos(angle)) * half_x + std::abs(std::sin(angle)) * half_y};
+}
+
+Profile stairs(const BaseBands& bands, double reach) {
+  Profile p;
+  p.add(-reach, bands.depth(0));
+  for (int k = 0; k + 1 < bands.count(); ++k) {
+    const double t = bands.border()[static_cast<std::size_t>(k)];
+    p.add(t, bands.depth(k));
+    p.add(t, bands.depth(k + 1));
+  }
+  p.add(reach, bands.depth(bands.count() - 1));
+  return p;
+}
+
+}  // namespace
+
+std::optional<BaseBands> base_bands(const ReliefOptions& options, const ViewFrame& frame) {
+  if (options.base != BaseShape::stairs) return std::nullopt;
+  const Extent extent = extent_of(options, frame);
+  std::vector<double> depth, border;
+  for (int k = 0; k < options.base_steps; ++k) {
+    depth.push_back(extent.depth * k / (options.base_steps - 1));
+    if (k > 0) border.push_back(extent.half_across * (2.0 * k / options.base_steps - 1));
+  }
+  return BaseBands(depth, border, options.base_turn_deg);
+}
+
+TriangleMesh base_shape(const ReliefOptions& options, const ViewFrame& frame) {
+  const double size = options.width_mm;
+  const auto [depth, reach, half_across] = extent_of(options, frame);
   const double pitch = options.base_pitch_mm ? *options.base_pitch_mm / size : 2 * half_across;
   switch (options.base) {
     case BaseShape::cylinder:
@@ -102,6 +135,7 @@ TriangleMesh base_shape(const ReliefOptions& options, const ViewFrame& frame) {
                     "The waves are too short for this width: make them at least " +
                         with_decimals(2 * reach * size / max_waves + 0.05, 1) + " mm long.");
       return swept(wave(depth, reach, pitch), reach, options.base_turn_deg);
+    case BaseShape::stairs: return swept(stairs(*base_bands(options, frame), reach), reach, options.base_turn_deg);
     default: return swept(groove(depth, reach, pitch), reach, options.base_turn_deg);
   }
 }

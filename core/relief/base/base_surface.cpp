@@ -9,7 +9,8 @@
 namespace formwright {
 namespace {
 
-/// The part of a polygon on one side of a plane through one axis (Sutherland and Hodgman 1974): side * p[axis] <= limit.
+/// The part of a polygon on one side of a plane through one axis (Sutherland and Hodgman 1974): side * p[axis] <=
+/// limit.
 std::vector<Vec3> clipped(const std::vector<Vec3>& polygon, int axis, double side, double limit) {
   std::vector<Vec3> inside;
   for (std::size_t k = 0; k < polygon.size(); ++k) {
@@ -23,7 +24,8 @@ std::vector<Vec3> clipped(const std::vector<Vec3>& polygon, int axis, double sid
 
 }  // namespace
 
-BaseSurface::BaseSurface(const TriangleMesh& mesh) : mesh_(mesh), caster_(std::make_shared<const RayCaster>(mesh)) {
+BaseSurface::BaseSurface(const TriangleMesh& mesh, std::optional<BaseBands> bands)
+    : mesh_(mesh), bands_(std::move(bands)), caster_(std::make_shared<const RayCaster>(mesh)) {
   front_ = std::min(0.0, mesh.V.col(2).minCoeff()) - 1;
   far_ = 4 * (mesh.V.rowwise().norm().maxCoeff() + 1) - front_;
 }
@@ -31,6 +33,7 @@ BaseSurface::BaseSurface(const TriangleMesh& mesh) : mesh_(mesh), caster_(std::m
 std::optional<double> BaseSurface::depth_on_ray(const ViewFrame& frame, Eigen::Index vertex, double shift) const {
   if (is_flat()) return shift;
   const Vec3 p = frame.P.row(vertex).transpose();
+  if (bands_) return bands_->depth(bands_->of_ray(frame, p)) + shift;
   if (frame.kappa == 0) {
     const std::optional<double> depth = depth_at(p.x(), p.y());
     if (!depth) return std::nullopt;

@@ -6,7 +6,8 @@
 #include <utility>
 
 #include "geometry/queries/ray_caster.h"
-#include "relief/view_frame.h"
+#include "relief/base/base_bands.h"
+#include "relief/view/view_frame.h"
 
 namespace formwright {
 
@@ -15,23 +16,29 @@ class BaseSurface {
  public:
   BaseSurface() = default;
   /// `mesh`: at least one triangle, open or closed; of what lies behind each other the foremost counts.
-  explicit BaseSurface(const TriangleMesh& mesh);
+  /// `bands`: of a base in steps, whose planes and the walls between them the mesh has.
+  explicit BaseSurface(const TriangleMesh& mesh, std::optional<BaseBands> bands = std::nullopt);
 
   bool is_flat() const { return caster_ == nullptr; }
+  /// Null where it has no steps.
+  const BaseBands* bands() const { return bands_ ? &*bands_ : nullptr; }
 
-  /// Depth z at which the ray from the viewpoint through a vertex of the model first meets the base, moved by `shift` along
-  /// z. Nothing where it misses. For a base without overhangs as seen along z, a larger shift is met later.
+  /// Depth z at which the ray from the viewpoint through a vertex of the model first meets the base, moved by `shift`
+  /// along z. On steps, the depth of the step whose group the ray belongs to,
+  /// and `shift`: relief on the walls between them cannot be made. Nothing where it misses. For a base without
+  /// overhangs as seen along z, a larger shift is met later.
   std::optional<double> depth_on_ray(const ViewFrame& frame, Eigen::Index vertex, double shift) const;
 
   /// Depth z of the base at a point of the plate, seen straight on. Nothing beyond its edge.
   std::optional<double> depth_at(double x, double y) const;
 
-  /// Least and largest depth over the rectangle |x| <= half_x, |y| <= half_y, all sheets of the mesh included. Nothing where
-  /// the base does not reach into it.
+  /// Least and largest depth over the rectangle |x| <= half_x, |y| <= half_y, all sheets of the mesh included. Nothing
+  /// where the base does not reach into it.
   std::optional<std::pair<double, double>> depth_range(double half_x, double half_y) const;
 
  private:
   TriangleMesh mesh_;
+  std::optional<BaseBands> bands_;
   std::shared_ptr<const RayCaster> caster_;
   double front_ = 0, far_ = 0;  // before everything, and a distance beyond everything from there
 };

@@ -14,13 +14,14 @@ constexpr std::size_t vertices_a_chunk = 2048;
 
 void refuse_misses(const DepthBounds& bounds, int asked, const ReliefOptions& options) {
   if (bounds.missed == asked)
-    throw Error(ErrorCode::invalid_input, "base_mesh",
-                "No line of sight to the model meets the base: move the base behind the model, with the middle of the relief at its x = y = 0.");
+    throw Error(
+        ErrorCode::invalid_input, "base_mesh",
+        "No line of sight to the model meets the base: move the base behind the model, with the middle of the relief at its x = y = 0.");
   if (bounds.missed > 0 && options.base_misses == BaseMisses::refused)
-    throw Error(ErrorCode::invalid_input, "base_misses",
-                "The base ends before the model does: " + std::to_string(bounds.missed) + " of " +
-                    std::to_string(asked) +
-                    " vertices have no base behind them. Make the base larger, the relief narrower, or let these vertices go free.");
+    throw Error(
+        ErrorCode::invalid_input, "base_misses",
+        "The base ends before the model does: " + std::to_string(bounds.missed) + " of " + std::to_string(asked) +
+            " vertices have no base behind them. Make the base larger, the relief narrower, or let these vertices go free.");
 }
 
 }  // namespace
@@ -34,6 +35,11 @@ DepthBounds depth_bounds(const ViewFrame& frame, const Visibility& visibility, c
   bounds.farthest = Eigen::VectorXd::Constant(frame.P.rows(), carve);
   bounds.bounded.assign(n, 1);
   if (options.bounded_vertices == BoundedVertices::visible) bounds.bounded = visibility.vertex;
+  bounds.group.assign(n, 0);
+  bounds.above = thickness;
+  bounds.below = carve;
+  const BaseBands* const bands = base.bands();
+  if (bands != nullptr) bounds.groups = bands->count();
   if (!base.is_flat()) {
     std::atomic<int> missed = 0;
     parallel_for(n, vertices_a_chunk, [&](std::size_t begin, std::size_t end) {
@@ -42,6 +48,7 @@ DepthBounds depth_bounds(const ViewFrame& frame, const Visibility& visibility, c
         const auto vertex = static_cast<Eigen::Index>(i);
         const auto nearest = base.depth_on_ray(frame, vertex, -thickness),
                    farthest = base.depth_on_ray(frame, vertex, carve);
+        if (bands != nullptr) bounds.group[i] = bands->of_ray(frame, frame.P.row(vertex).transpose());
         if (nearest && farthest) {
           bounds.nearest[vertex] = *nearest;
           bounds.farthest[vertex] = std::max(*nearest, *farthest);

@@ -29,7 +29,8 @@ BaseSurface relief_base(const OperationCall& call, const ReliefOptions& options,
                   "The base is given twice, as a file and as a built-in shape: leave one of them out.");
     return BaseSurface(base_from_file(load_model(call, base_file)->model.mesh, options));
   }
-  return options.base == BaseShape::flat ? BaseSurface() : BaseSurface(base_shape(options, frame));
+  return options.base == BaseShape::flat ? BaseSurface()
+                                         : BaseSurface(base_shape(options, frame), base_bands(options, frame));
 }
 
 }  // namespace formwright

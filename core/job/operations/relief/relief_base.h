@@ -3,7 +3,7 @@
 // The base of a relief as a job asks for it: a built-in shape, or a file of its own.
 #include "job/contract/operation.h"
 #include "relief/base/base_surface.h"
-#include "relief/relief_options.h"
+#include "relief/view/relief_options.h"
 
 namespace formwright {
 

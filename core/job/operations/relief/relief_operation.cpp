@@ -17,8 +17,8 @@ namespace {
 
 // Of the relief's thickness: how far the solid's larger triangles may leave the height field.
 constexpr double solid_tolerance = 1e-3;
-constexpr double nodes_of_picture = 256;     // across the base where it is only looked at
-constexpr double unbounded_mm = 1e30;  // stands for "no bound" in relief.ply, where infinity has no safe spelling
+constexpr double nodes_of_picture = 256;  // across the base where it is only looked at
+constexpr double unbounded_mm = 1e30;     // stands for "no bound" in relief.ply, where infinity has no safe spelling
 
 std::vector<OutputInfo> relief_outputs() {
   return {{"relief.ply", "application/x-ply", "PLY",
@@ -56,6 +56,8 @@ std::vector<ReportField> relief_report_fields() {
       {"order_violation_max_mm", "Largest depth order violation", "mm",
        "Largest distance by which a hidden point comes in front of what hides it; practically 0."},
       {"order_rows", "Depth order conditions", "", "Number of conditions that keep what is in front in front."},
+      {"order_rows_left_out", "Depth order conditions left out", "",
+       "Number of conditions that contradict the limits of depth, where the base bends by more than the relief is thick."},
       {"vertices_beyond_base", "Vertices beyond the base", "",
        "Number of vertices that have no base behind them and are free in depth."},
       {"kkt_residual", "KKT residual", "",
@@ -106,12 +108,19 @@ TriangleMesh plate_mesh(PlateSize plate, double plate_mm) {
   return box;
 }
 
-/// The base in the same axes, for pictures only: coarser than the solid, and as deep as it may be carved behind the relief.
+/// What stands before the base: the relief, or on steps its pieces.
+CoveringMesh covering(const ReliefSolver& solver, const Relief& relief) {
+  if (relief.pieces.band.empty()) return {relief.moved, solver.F()};
+  return {relief.pieces.V, relief.pieces.F, &relief.pieces.band};
+}
+
+/// The base in the same axes, for pictures only: coarser than the solid, and as deep as it may be carved behind the
+/// relief.
 TriangleMesh base_mesh(const ReliefSolver& solver, const Relief& relief, PlateSize plate, const ReliefOptions& options,
                        const AllowedSpace& space, Context& context) {
   if (space.base.is_flat() && space.below_mm == 0) return plate_mesh(plate, options.plate_mm);
   const double pixel_mm = std::max(options.pixel_mm, std::max(plate.width_mm, plate.height_mm) / nodes_of_picture);
-  const HeightMap bed = make_bed_map(relief.moved, solver.F(), options.width_mm, plate, pixel_mm, space, context);
+  const HeightMap bed = make_bed_map(covering(solver, relief), options.width_mm, plate, pixel_mm, space, context);
   TriangleMesh mesh = make_solid(bed, options.plate_mm, solid_tolerance * (bed.top_mm - bed.floor_mm), context);
   mesh.V.rowwise() -= Eigen::RowVector3d(plate.width_mm / 2, plate.height_mm / 2, options.plate_mm - bed.floor_mm);
   return mesh;
@@ -119,14 +128,15 @@ TriangleMesh base_mesh(const ReliefSolver& solver, const Relief& relief, PlateSi
 
 /// The deformed model on its base, in the same axes.
 Model display_model(const ReliefSolver& solver, const Relief& relief, const TriangleMesh& base, double size_mm) {
-  const Eigen::Index n = relief.moved.rows(), m = solver.F().rows();
+  const CoveringMesh front = covering(solver, relief);
+  const Eigen::Index n = front.V.rows(), m = front.F.rows();
   Model model;
   model.mesh.V.resize(n + base.V.rows(), 3);
-  model.mesh.V.topRows(n) = relief.moved * size_mm;
+  model.mesh.V.topRows(n) = front.V * size_mm;
   model.mesh.V.topRows(n).col(2) *= -1;
   model.mesh.V.bottomRows(base.V.rows()) = base.V;
   model.mesh.F.resize(m + base.F.rows(), 3);
-  model.mesh.F.topRows(m) = solver.F();
+  model.mesh.F.topRows(m) = front.F;
   model.mesh.F.bottomRows(base.F.rows()) = base.F.array() + static_cast<int>(n);
   return model;
 }
@@ -157,6 +167,7 @@ void report_relief(Json& report, const LoadedModel& loaded, const ReliefSolver& 
   report["bound_violation_max_mm"] = relief.bound_violation_max_mm;
   report["order_violation_max_mm"] = relief.order_violation_max_mm;
   report["order_rows"] = relief.order_rows;
+  report["order_rows_left_out"] = relief.order_rows_left_out;
   report["vertices_beyond_base"] = relief.vertices_beyond_base;
   report["kkt_residual"] = relief.qp.kkt_residual;
   report["rounds"] = relief.qp.rounds;
@@ -210,8 +221,9 @@ OperationResult run_relief(const OperationCall& call, const ReliefOptions& optio
   const PlateSize plate{options.width_mm + 2 * options.margin_mm,
                         frame.image_height * options.width_mm + 2 * options.margin_mm};
   const AllowedSpace space{base, options.thickness_mm, options.carve_depth_mm};
-  const auto base_depth = base.depth_range(0.5 * plate.width_mm / options.width_mm, 0.5 * plate.height_mm / options.width_mm)
-                              .value_or(std::pair{0.0, 0.0});
+  const auto base_depth =
+      base.depth_range(0.5 * plate.width_mm / options.width_mm, 0.5 * plate.height_mm / options.width_mm)
+          .value_or(std::pair{0.0, 0.0});
   const double range_mm = options.width_mm * (base_depth.second - base_depth.first) + space.above_mm + space.below_mm;
   report["size_mm"] = {plate.width_mm, plate.height_mm, options.plate_mm + range_mm};
   const auto add = [&](const char* name, Bytes bytes) {
@@ -220,9 +232,12 @@ OperationResult run_relief(const OperationCall& call, const ReliefOptions& optio
     context.check_cancelled();
   };
   if (call.wants("relief.ply")) {
+    const CoveringMesh front = covering(*solver, relief);
     Model model;
-    model.mesh = {frame.to_model(relief.moved, options.width_mm), solver->F()};
-    const std::vector<VertexColumn> columns = ply_columns(*solver, relief);
+    model.mesh = {frame.to_model(front.V, options.width_mm), front.F};
+    std::vector<VertexColumn> columns = ply_columns(*solver, relief);
+    if (front.band != nullptr)
+      for (VertexColumn& column : columns) column.values = column.values(relief.pieces.origin).eval();
     WriteOptions write;
     write.columns = columns;
     add("relief.ply", write_model(model, MeshFormat::ply, write, context));
@@ -243,7 +258,7 @@ OperationResult run_relief(const OperationCall& call, const ReliefOptions& optio
   const bool wants_solid = call.wants("relief.stl") || call.wants("relief.3mf") || call.wants("relief.obj");
   if (wants_solid || call.wants("heightmap.png")) {
     const HeightMap map =
-        make_height_map(relief.moved, solver->F(), options.width_mm, plate, options.pixel_mm, space, context);
+        make_height_map(covering(*solver, relief), options.width_mm, plate, options.pixel_mm, space, context);
     if (call.wants("heightmap.png")) {
       report["heightmap_pixel_mm"] = {map.pitch_x_mm, map.pitch_y_mm};
       const double of_map_mm = map.top_mm - map.floor_mm;
@@ -257,8 +272,8 @@ OperationResult run_relief(const OperationCall& call, const ReliefOptions& optio
       image.levels.reserve(map.height_mm.size());
       for (int row = map.rows - 1; row >= 0; --row)  // pictures start at the top
         for (int column = 0; column < map.columns; ++column)
-          image.levels.push_back(static_cast<std::uint16_t>(
-              std::lround(std::min(1.0, (static_cast<double>(map.at(row, column)) - map.floor_mm) / of_map_mm) * 65535)));
+          image.levels.push_back(static_cast<std::uint16_t>(std::lround(
+              std::min(1.0, (static_cast<double>(map.at(row, column)) - map.floor_mm) / of_map_mm) * 65535)));
       add("heightmap.png", write_png16(image));
     }
     if (wants_solid) {

@@ -24,11 +24,11 @@ struct EnumNames<BoundedVertices> {
   static constexpr std::array<std::string_view, 2> labels{"Flat", "May sink"};
 };
 
-enum class BaseShape { flat, cylinder, wave, groove };
+enum class BaseShape { flat, cylinder, wave, groove, stairs };
 template <>
 struct EnumNames<BaseShape> {
-  static constexpr std::array<std::string_view, 4> names{"flat", "cylinder", "wave", "groove"};
-  static constexpr std::array<std::string_view, 4> labels{"Flat", "Cylinder", "Waves", "V groove"};
+  static constexpr std::array<std::string_view, 5> names{"flat", "cylinder", "wave", "groove", "stairs"};
+  static constexpr std::array<std::string_view, 5> labels{"Flat", "Cylinder", "Waves", "V groove", "Stairs"};
 };
 
 enum class BaseMisses { refused, free };
@@ -46,6 +46,7 @@ struct ReliefOptions {
   BaseShape base = BaseShape::flat;
   double base_depth_mm = 10;
   std::optional<double> base_pitch_mm;
+  int base_steps = 5;
   double base_turn_deg = 0;
   double carve_depth_mm = 0;
   BaseMisses base_misses = BaseMisses::refused;
@@ -86,11 +87,10 @@ struct ReliefOptions {
           "How far the relief may go behind the surface of its base. 0 stands out only; 1 to 6 mm are usual for carving.")
           .group("Base")
           .slider(0, 20),
-      parameter(
-          "base_depth_mm", &ReliefOptions::base_depth_mm, "Depth of the base", unit::mm, 0.01, 1000,
-          "How far the deepest places of a cylinder, waves or a V groove lie behind the foremost ones, over the width of the plate.")
+      parameter("base_depth_mm", &ReliefOptions::base_depth_mm, "Depth of the base", unit::mm, 0.01, 1000,
+                "How far the deepest places of the base lie behind its foremost ones, over the width of the plate.")
           .group("Base")
-          .only_with("base", "cylinder", "wave", "groove")
+          .only_with("base", "cylinder", "wave", "groove", "stairs")
           .slider(1, 60),
       parameter(
           "base_pitch_mm", &ReliefOptions::base_pitch_mm, "Width of waves or groove", unit::mm, 0.1, 10000,
@@ -98,10 +98,16 @@ struct ReliefOptions {
           .group("Base")
           .only_with("base", "wave", "groove")
           .slider(10, 400),
-      parameter("base_turn_deg", &ReliefOptions::base_turn_deg, "Turn of the base", unit::degrees, -180, 180,
-                "Turns the base on the plate. At 0° waves, groove and cylinder run upwards; at 90° they run across.")
+      parameter("base_steps", &ReliefOptions::base_steps, "Steps", unit::none, 2, 40,
+                "Number of steps, all of the same width and height. Each carries a part of the picture.")
           .group("Base")
-          .only_with("base", "cylinder", "wave", "groove")
+          .only_with("base", "stairs")
+          .slider(2, 12),
+      parameter(
+          "base_turn_deg", &ReliefOptions::base_turn_deg, "Turn of the base", unit::degrees, -180, 180,
+          "Turns the base on the plate. At 0° waves, groove and cylinder run upwards; at 90° they run across, and stairs rise towards the back.")
+          .group("Base")
+          .only_with("base", "cylinder", "wave", "groove", "stairs")
           .slider(-90, 90),
       parameter(
           "base_misses", &ReliefOptions::base_misses, "Where the base ends",

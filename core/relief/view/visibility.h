@@ -6,7 +6,7 @@
 #include "base/context.h"
 #include "geometry/queries/ray_caster.h"
 #include "numerics/qp/bounded_qp.h"
-#include "relief/view_frame.h"
+#include "relief/view/view_frame.h"
 
 namespace formwright {
 

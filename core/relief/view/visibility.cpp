@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "relief/visibility.h"
+#include "relief/view/visibility.h"
 
 #include <Eigen/Geometry>
 #include <cmath>

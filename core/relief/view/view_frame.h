@@ -2,7 +2,7 @@
 #pragma once
 // The viewer's axes: where eqs. (3.3)-(3.4) put the viewpoint o, and the plate of the relief.
 #include "geometry/mesh/triangle_mesh.h"
-#include "relief/relief_options.h"
+#include "relief/view/relief_options.h"
 
 namespace formwright {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "relief/view_frame.h"
+#include "relief/view/view_frame.h"
 
 #include <Eigen/Geometry>
 #include <cmath>

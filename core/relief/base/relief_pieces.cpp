@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "relief/base/relief_pieces.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+
+namespace formwright {
+namespace {
+
+/// A corner of a triangle that is being cut: a vertex of the mesh (b < 0), or the place on an edge where a border
+/// crosses it.
+struct Corner {
+  int a = -1, b = -1, border = -1;
+  int origin = -1;
+  double t = 0;  // on the plate, against the borders
+  Vec3 place = Vec3::Zero();
+  Vec2 limits = Vec2::Zero();  // nearest and farthest depth, of the vertices around
+  bool bounded = true;
+  std::array<int, 3> key() const { return {a, b, border}; }
+};
+
+class Cutter {
+ public:
+  Cutter(const ViewFrame& frame, const Positions& joint, const Eigen::VectorXd& m, const DepthBounds& bounds,
+         const BaseBands& bands)
+      : frame_(frame), joint_(joint), m_(m), bounds_(bounds), bands_(bands) {
+    for (int k = 0; k + 1 < bands.count(); ++k) border_t_.push_back(bands.border_on_plate(frame, k));
+  }
+
+  void cut(int a, int b, int c) {
+    std::vector<Corner> rest{corner(a), corner(b), corner(c)};
+    for (int band = 0; band < bands_.count() && rest.size() >= 3; ++band) {
+      std::vector<Corner> here, beyond;
+      if (band + 1 == bands_.count()) here.swap(rest);
+      else split(rest, band, here, beyond);
+      for (std::size_t k = 2; k < here.size(); ++k) add(here[0], here[k - 1], here[k], band);
+      rest.swap(beyond);
+    }
+  }
+
+  ReliefPieces pieces() {
+    ReliefPieces result;
+    result.V.resize(static_cast<Eigen::Index>(places_.size()), 3);
+    for (std::size_t i = 0; i < places_.size(); ++i)
+      result.V.row(static_cast<Eigen::Index>(i)) = places_[i].transpose();
+    result.F.resize(static_cast<Eigen::Index>(faces_.size()), 3);
+    for (std::size_t f = 0; f < faces_.size(); ++f) result.F.row(static_cast<Eigen::Index>(f)) = faces_[f].transpose();
+    result.band = std::move(band_);
+    result.origin = std::move(origin_);
+    return result;
+  }
+
+ private:
+  Corner corner(int vertex) const {
+    Corner c;
+    c.a = c.origin = vertex;
+    c.place = joint_.row(vertex).transpose();
+    c.t = bands_.on_plate(frame_, c.place);
+    c.limits = {bounds_.nearest[vertex], bounds_.farthest[vertex]};
+    c.bounded = bounds_.bounded[static_cast<std::size_t>(vertex)] != 0;
+    return c;
+  }
+
+  /// The part of a convex polygon before a border, and the part behind it.
+  void split(const std::vector<Corner>& polygon, int border, std::vector<Corner>& before, std::vector<Corner>& behind) {
+    const double at = border_t_[static_cast<std::size_t>(border)];
+    for (std::size_t k = 0; k < polygon.size(); ++k) {
+      const Corner &p = polygon[k], &q = polygon[(k + 1) % polygon.size()];
+      (p.t < at ? before : behind).push_back(p);
+      if ((p.t < at) == (q.t < at)) continue;
+      const Corner& first = std::less<>()(p.key(), q.key()) ? p : q;  // the same place from both sides of the edge
+      const Corner& second = &first == &p ? q : p;
+      Corner on;
+      on.a = first.b < 0 ? first.a : id_of(first);
+      on.b = second.b < 0 ? second.a : id_of(second);
+      on.border = border;
+      // The plane through the viewpoint and the border: across - at (1 + kappa z) = 0, linear in the place.
+      const auto off = [&](const Vec3& x) { return bands_.across(x.x(), x.y()) - at * (1 + frame_.kappa * x.z()); };
+      const double d = off(first.place), e = off(second.place),
+                   share = d == e ? 0.5 : std::clamp(d / (d - e), 0.0, 1.0);
+      on.place = first.place + share * (second.place - first.place);
+      on.t = at;
+      on.origin = share < 0.5 ? first.origin : second.origin;
+      on.bounded = first.bounded && second.bounded;
+      before.push_back(on);
+      behind.push_back(on);
+    }
+  }
+
+  /// Places on a second border's edges are told apart by a number of their own, beyond the vertices.
+  int id_of(const Corner& c) {
+    return ids_.emplace(c.key(), static_cast<int>(joint_.rows() + static_cast<Eigen::Index>(ids_.size())))
+        .first->second;
+  }
+
+  void add(const Corner& a, const Corner& b, const Corner& c, int band) {
+    faces_.emplace_back(vertex(a, band), vertex(b, band), vertex(c, band));
+    band_.push_back(band);
+  }
+
+  int vertex(const Corner& c, int band) {
+    const std::array<int, 4> key{c.a, c.b, c.border, band};
+    const auto [found, is_new] = vertices_.try_emplace(key, static_cast<int>(places_.size()));
+    if (is_new) {
+      places_.push_back(brought_back(c, band));
+      origin_.push_back(c.origin);
+    }
+    return found->second;
+  }
+
+  /// Scaled about the viewpoint by 1 / mu; straight on, shifted in depth.
+  Vec3 brought_back(const Corner& c, int band) const {
+    const double m = m_[band], kappa = frame_.kappa;
+    Vec3 p = c.place;
+    if (kappa == 0) p.z() -= m;
+    else {
+      const Vec3 viewpoint(0, 0, -1 / kappa);
+      p = viewpoint + (p - viewpoint) / (1 + kappa * m);
+    }
+    if (!c.bounded) return p;
+    const bool is_new = c.border >= 0;
+    const double base = bands_.depth(band);
+    const double nearest = is_new ? base - bounds_.above : c.limits[0],
+                 farthest = is_new ? base + bounds_.below : c.limits[1];
+    const double z = std::clamp(p.z(), nearest, farthest);
+    const double stretch = (1 + kappa * z) / (1 + kappa * p.z());
+    return {p.x() * stretch, p.y() * stretch, z};
+  }
+
+  const ViewFrame& frame_;
+  const Positions& joint_;
+  const Eigen::VectorXd& m_;
+  const DepthBounds& bounds_;
+  const BaseBands& bands_;
+  std::vector<double> border_t_;
+  std::map<std::array<int, 3>, int> ids_;
+  std::map<std::array<int, 4>, int> vertices_;
+  std::vector<Vec3> places_;
+  std::vector<Eigen::Vector3i> faces_;
+  std::vector<int> band_, origin_;
+};
+
+}  // namespace
+
+ReliefPieces cut_into_bands(const ViewFrame& frame, const Triangles& F, const Eigen::VectorXd& joint,
+                            const Eigen::VectorXd& m, const DepthBounds& bounds, const BaseBands& bands,
+                            Context& context) {
+  const Positions places = frame.moved(joint);
+  Cutter cutter(frame, places, m, bounds, bands);
+  for (Eigen::Index f = 0; f < F.rows(); ++f) {
+    if (f % 65536 == 0) context.check_cancelled();
+    cutter.cut(F(f, 0), F(f, 1), F(f, 2));
+  }
+  return cutter.pieces();
+}
+
+}  // namespace formwright

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// A relief on a base in steps, cut where its rays pass from one band to the next: thesis Fig. 3.7, right.
+#include <vector>
+
+#include "base/context.h"
+#include "relief/base/base_bands.h"
+#include "relief/base/depth_bounds.h"
+
+namespace formwright {
+
+struct ReliefPieces {
+  Positions V;              // view coordinates, each vertex on its ray
+  Triangles F;              // turned as the relief's
+  std::vector<int> band;    // of each triangle; no vertex belongs to triangles of two bands
+  std::vector<int> origin;  // of each vertex, that of the relief which it is or lies nearest to
+};
+
+/// Cuts the joint surface exactly along the planes through the viewpoint and the borders, and brings each part back to
+/// its band by its own scale. New vertices on a border keep to the bounds of their band.
+/// @param joint  n, u of the surface in one piece, as eq. (3.14) has it
+/// @param m      of each band, mu = 1 + kappa m, or the shift in depth straight on
+ReliefPieces cut_into_bands(const ViewFrame& frame, const Triangles& F, const Eigen::VectorXd& joint,
+                            const Eigen::VectorXd& m, const DepthBounds& bounds, const BaseBands& bands,
+                            Context& context);
+
+}  // namespace formwright

@@ -18,7 +18,7 @@ Json record(const Json& parameters, const std::map<std::string, InputBlob>& inpu
 
 TEST_CASE("MadeBy.WhatWasGivenIsSaid") {
   const Json made = record({{"width_mm", 100}, {"thickness_mm", 5}});
-  CHECK(made["parameters"] == Json{{"width_mm", 100.0}, {"thickness_mm", 5.0}});
+  CHECK(made["parameters"] == Json{{"thickness_mm", 5.0}, {"width_mm", 100.0}});
   CHECK(made["operation"] == "relief");
   CHECK(made["version"] == version());
   CHECK(made["inputs"]["mesh"]["sha256"] == std::string(64, 'a'));

@@ -56,7 +56,8 @@ class Cutter {
     Corner c;
     c.a = c.origin = vertex;
     c.place = joint_.row(vertex).transpose();
-    c.t = bands_.on_plate(frame_, c.place);
+    // Of the model, where the ray is the same: which side it is on does not hang on the solution's last digit.
+    c.t = bands_.on_plate(frame_, frame_.P.row(vertex).transpose());
     c.limits = {bounds_.nearest[vertex], bounds_.farthest[vertex]};
     c.bounded = bounds_.bounded[static_cast<std::size_t>(vertex)] != 0;
     return c;
@@ -95,7 +96,11 @@ class Cutter {
   }
 
   void add(const Corner& a, const Corner& b, const Corner& c, int band) {
-    faces_.emplace_back(vertex(a, band), vertex(b, band), vertex(c, band));
+    Eigen::Vector3i face;
+    face[0] = vertex(a, band);  // one after the other: the arguments of one call have no order
+    face[1] = vertex(b, band);
+    face[2] = vertex(c, band);
+    faces_.push_back(face);
     band_.push_back(band);
   }
 

@@ -3,6 +3,7 @@
 //   sample_pictures sheet OUT.png
 //   sample_pictures one SAMPLE VERTICES PIXELS OUT.png [turn_deg tilt_deg]
 //   sample_pictures relief SAMPLE VERTICES RELIEF.ply THICKNESS_MM OUT.png
+//   sample_pictures solids OUT.png SOLID.stl ...
 // RELIEF.ply: `formwright relief --sample SAMPLE --sample-vertices VERTICES --projection orthographic`.
 #include <Eigen/Geometry>
 #include <cmath>
@@ -12,6 +13,8 @@
 #include <iostream>
 #include <iterator>
 #include <numbers>
+#include <string>
+#include <vector>
 
 #include "base/error.h"
 #include "formats/mesh_io.h"
@@ -71,6 +74,33 @@ Model read_file(const std::string& path) {
   return read_model(as_bytes(text), path, context);
 }
 
+/// Each from the front and, below, turned and tilted and by `shrink` smaller; plaster. `size` of the largest, mm.
+RgbPicture side_by_side(const std::vector<const Model*>& models, const Vec3& size, double turn_deg, double tilt_deg,
+                        double shrink) {
+  constexpr int width = 400, front = 500, side = 300;
+  RgbPicture picture = blank_picture(static_cast<int>(models.size()) * width, front + side, RenderOptions().background);
+  int k = 0;
+  for (const Model* model : models) {
+    RenderOptions options;
+    options.use_colours = false;
+    options.floor = false;
+    options.width = width;
+    options.height = front;
+    options.millimetres_across = 1.12 * std::max(size.x(), size.y() * width / front);
+    paste(picture, render(*model, options), k * width, 0);
+    options.height = side;
+    options.view_direction = looking(turn_deg, tilt_deg);
+    // The same lamp, as this camera sees it.
+    const double tilt = tilt_deg * std::numbers::pi / 180, up = options.lamp.y(), back = options.lamp.z();
+    options.lamp.y() = std::cos(tilt) * up - std::sin(tilt) * back;
+    options.lamp.z() = std::sin(tilt) * up + std::cos(tilt) * back;
+    options.millimetres_across *= shrink;
+    paste(picture, render(*model, options), k * width, front);
+    ++k;
+  }
+  return picture;
+}
+
 /// The model, its relief and its linear compression into the same slab, from the front and nearly from the side.
 void relief(const std::string& sample, int vertices, const std::string& ply, double thickness_mm,
             const std::string& path) {
@@ -82,29 +112,22 @@ void relief(const std::string& sample, int vertices, const std::string& ply, dou
   original.mesh.V *= flat_box.size().x() / box.size().x();
   Model linear = original;
   linear.mesh.V.col(2) *= thickness_mm / bounding_box(linear.mesh).size().z();
-  constexpr int width = 400, front = 500, side = 300;
-  constexpr double tilt_deg = 62;
-  RgbPicture picture = blank_picture(3 * width, front + side, RenderOptions().background);
-  int k = 0;
-  for (const Model* model : {&original, &relief, &linear}) {
-    RenderOptions options;
-    options.use_colours = false;
-    options.floor = false;
-    options.width = width;
-    options.height = front;
-    options.millimetres_across = 1.12 * std::max(flat_box.size().x(), flat_box.size().y() * width / front);
-    paste(picture, render(*model, options), k * width, 0);
-    options.height = side;
-    options.view_direction = looking(0, tilt_deg);
-    // The same lamp, as this camera sees it.
-    const double tilt = tilt_deg * std::numbers::pi / 180, up = options.lamp.y(), back = options.lamp.z();
-    options.lamp.y() = std::cos(tilt) * up - std::sin(tilt) * back;
-    options.lamp.z() = std::sin(tilt) * up + std::cos(tilt) * back;
-    options.millimetres_across *= 1.05;
-    paste(picture, render(*model, options), k * width, front);
-    ++k;
+  save(path, encode_palette_png(side_by_side({&original, &relief, &linear}, flat_box.size(), 0, 62, 1.05)));
+}
+
+/// Solids of reliefs as they lie, from the front and from the side.
+void solids(const std::string& path, const std::vector<std::string>& files) {
+  std::vector<Model> models;
+  Vec3 size = Vec3::Zero();
+  for (const std::string& file : files) {
+    models.push_back(read_file(file));
+    const BoundingBox box = bounding_box(models.back().mesh);
+    models.back().mesh.V.rowwise() -= box.centre().transpose();
+    size = size.cwiseMax(box.size());
   }
-  save(path, encode_palette_png(picture));
+  std::vector<const Model*> all;
+  for (const Model& model : models) all.push_back(&model);
+  save(path, encode_palette_png(side_by_side(all, size, 25, 50, 1.35)));
 }
 
 }  // namespace
@@ -121,9 +144,11 @@ int main(int argc, char** argv) {
       save(argv[5], encode_palette_png(render(make_sample(argv[2], std::atoi(argv[3]), context), options)));
     } else if (argc == 7 && std::strcmp(argv[1], "relief") == 0) {
       relief(argv[2], std::atoi(argv[3]), argv[4], std::atof(argv[5]), argv[6]);
+    } else if (argc > 3 && std::strcmp(argv[1], "solids") == 0) {
+      solids(argv[2], {argv + 3, argv + argc});
     } else {
       std::cerr << "sample_pictures sheet OUT.png | one SAMPLE VERTICES PIXELS OUT.png [turn_deg tilt_deg] | relief "
-                   "SAMPLE VERTICES RELIEF.ply THICKNESS_MM OUT.png\n";
+                   "SAMPLE VERTICES RELIEF.ply THICKNESS_MM OUT.png | solids OUT.png SOLID.stl ...\n";
       return 2;
     }
   } catch (const Error& error) {

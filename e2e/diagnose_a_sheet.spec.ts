@@ -28,7 +28,7 @@ async function openRoom(page: Page): Promise<void> {
 }
 
 const give = (page: Page, files: readonly ReturnType<typeof fileOf>[]) =>
-  page.locator('input[type=file]').setInputFiles([...files]);
+  page.getByLabel('Model or project file').setInputFiles([...files]);
 
 async function openObject(page: Page): Promise<void> {
   await openRoom(page);

@@ -152,7 +152,7 @@ test('a model dragged beyond the clamp is said, and form it stops at once', asyn
 
 test('a wrong file is said in words and the work stays', async ({ page }) => {
   await openSample(page, 'Pyramid');
-  await page.locator('input[type=file]').setInputFiles(fileOf('notes.obj', 'this is no model'));
+  await page.getByLabel('Model or project file').setInputFiles(fileOf('notes.obj', 'this is no model'));
   await expect(page.getByRole('alert').getByText('Could not open notes.obj')).toBeVisible();
   await expect(page.locator('.model-row strong')).toHaveText('Pyramid');
 });
@@ -160,12 +160,12 @@ test('a wrong file is said in words and the work stays', async ({ page }) => {
 test('a model with its material, and a reload that keeps the work of both rooms', async ({ page }) => {
   await openRoom(page);
   const files = [fileOf('ball.mtl', 'newmtl a\nKd 1 0 0\n'), fileOf('ball.obj', ballObj())];
-  await page.locator('input[type=file]').setInputFiles(files);
+  await page.getByLabel('Model or project file').setInputFiles(files);
   await expect(strip(page, 'Preview up to date')).toBeVisible();
   await coarse(page);
   await form(page);
   await goToRoom(page, 'Relief');
-  await page.locator('input[type=file]').setInputFiles(fileOf('other.obj', ballObj()));
+  await page.getByLabel('Model or project file').setInputFiles(fileOf('other.obj', ballObj()));
   await expect(strip(page, 'Preview up to date')).toBeVisible();
   await expect(page.getByText('Saved', { exact: true })).toBeVisible();
   await page.reload();

@@ -17,7 +17,7 @@ test('a reload keeps model, settings and results', async ({ page }) => {
 test('a wrong file is said in words and the work stays', async ({ page }) => {
   await openSample(page);
   const model = await page.locator('.model-row strong').textContent();
-  await page.locator('input[type=file]').setInputFiles(fileOf('notes.obj', 'this is no model'));
+  await page.getByLabel('Model or project file').setInputFiles(fileOf('notes.obj', 'this is no model'));
   await expect(page.getByRole('alert').getByText('Could not open notes.obj')).toBeVisible();
   await expect(page.locator('.model-row strong')).toHaveText(model ?? '');
   await expect(page.getByRole('button', { name: 'Choose another file' })).toBeVisible();
@@ -68,7 +68,7 @@ test('a project goes through a file', async ({ page }) => {
   await page.getByRole('menuitem', { name: 'Delete' }).click();
   await page.getByRole('dialog').getByRole('button', { name: 'Delete' }).click();
   await openPage(page);
-  await page.locator('input[type=file]').setInputFiles({
+  await page.getByLabel('Model or project file').setInputFiles({
     name: 'a.formwright',
     mimeType: 'application/zip',
     buffer: (await import('node:fs')).readFileSync(file),

@@ -131,7 +131,7 @@ test('following the view ends with the model it was followed for', async ({ page
   await openSample(page, 'Bust');
   await page.getByText('Follow the view', { exact: true }).click();
   await expect(page.getByRole('switch', { name: 'Follow the view' })).toBeChecked();
-  await page.locator('input[type=file]').setInputFiles(fileOf('ball.obj', ballObj()));
+  await page.getByLabel('Model or project file').setInputFiles(fileOf('ball.obj', ballObj()));
   await expect(page.getByText('ball.obj', { exact: true })).toBeVisible();
   await expect(page.getByRole('switch', { name: 'Follow the view' })).not.toBeChecked();
 });

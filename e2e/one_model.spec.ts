@@ -42,7 +42,7 @@ test('a model dropped on the start page is made into what one chooses, and then 
   await expect(page.getByRole('button', { name: 'Use ball.obj' })).toBeVisible();
   // Closed, the question leaves everything as it was.
   await page.getByRole('link', { name: 'Formwright, start' }).click();
-  await page.locator('input[type=file]').setInputFiles(ball);
+  await page.getByLabel('Model or project file').setInputFiles(ball);
   await expect(page.getByRole('dialog')).toBeVisible();
   await page.keyboard.press('Escape');
   await expect(page.getByRole('dialog')).toBeHidden();
@@ -52,10 +52,10 @@ test('a model dropped on the start page is made into what one chooses, and then 
 test('a drawing and a strange file find their rooms from the start page', async ({ page }) => {
   test.skip(backend === 'mock', 'the mock knows no drawings');
   await openPage(page);
-  await page.locator('input[type=file]').setInputFiles(plate);
+  await page.getByLabel('Model or project file').setInputFiles(plate);
   await expect(strip(page, 'Job ready')).toBeVisible();
   await page.getByRole('link', { name: 'Formwright, start' }).click();
-  await page.locator('input[type=file]').setInputFiles(fileOf('notes.txt', 'words'));
+  await page.getByLabel('Model or project file').setInputFiles(fileOf('notes.txt', 'words'));
   await expect(page.getByRole('alert').getByText('Could not open notes.txt')).toBeVisible();
 });
 
@@ -65,7 +65,7 @@ test(
   async ({ page }) => {
     test.skip(backend === 'native', 'the worker serves the same page');
     await openPage(page);
-    await page.locator('input[type=file]').setInputFiles(ball);
+    await page.getByLabel('Model or project file').setInputFiles(ball);
     await expect(page.getByRole('dialog')).toBeVisible();
     await expectAccessible(page, 'the question', 'question');
     await page.keyboard.press('Escape');

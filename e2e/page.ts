@@ -78,7 +78,7 @@ export async function openModel(
   file: ReturnType<typeof fileOf>,
   craft: 'Relief' | 'Thermoform' | 'Zippable' = 'Relief',
 ): Promise<void> {
-  await page.locator('input[type=file]').setInputFiles(file);
+  await page.getByLabel('Model or project file').setInputFiles(file);
   const question = page.getByRole('dialog', { name: `What will you make of ${file.name}?` });
   await question.getByRole('button', { name: craft }).click();
 }

@@ -32,10 +32,9 @@ if (server === undefined) throw new Error(`FORMWRIGHT_BACKEND is mock, wasm or n
 export default defineConfig({
   testDir: '.',
   outputDir: 'test-results/stories',
-  timeout: 300_000,
+  timeout: 180_000,
   expect: { timeout: 60_000 },
-  // Files side by side: a page waits half of its time, for a machine's clock or a file. The worker's machines are shared.
-  workers: backend === 'wasm' ? 2 : 1,
+  workers: 1, // each page draws with a software WebGL and solves: one after the other
   retries: process.env['CI'] ? 1 : 0, // what fails is reported and asked once more (setup/test.sh)
   reporter: process.env['CI'] ? 'dot' : 'list',
   use: {

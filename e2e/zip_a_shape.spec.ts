@@ -153,7 +153,7 @@ test('what cannot be made is said in the core’s words, and undone', async ({ p
   await page.keyboard.press('Control+z');
   await expect(strip(page, 'Preview up to date')).toBeVisible();
 
-  await page.locator('input[type=file]').setInputFiles(fileOf('notes.obj', 'this is no model'));
+  await page.getByLabel('Model or project file').setInputFiles(fileOf('notes.obj', 'this is no model'));
   await expect(page.getByRole('alert').getByText('Could not open notes.obj')).toBeVisible();
   await expect(page.locator('.model-row strong')).toHaveText('Star');
 });

@@ -26,8 +26,7 @@ export function BaseFile({ session }: { readonly session: ReliefSession }) {
       <input
         ref={input}
         type="file"
-        class="hidden-text"
-        tabIndex={-1}
+        hidden
         aria-label="File of the base"
         accept={formats.map((extension) => `.${extension}`).join(',')}
         onChange={({ currentTarget }) => {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A relief worked into another surface than a flat plate, up to the mill that carves it.
-import { chip, dialog, homeIt, practise, startButton } from './machine_room';
+import { chip, dialog, makeMillReady, startButton } from './machine_room';
 import { backend, expect, fileOf, openSample, solve, strip, test } from './page';
 
 test.skip(backend !== 'wasm', 'the page does the same with the worker');
@@ -34,12 +34,7 @@ test('a V groove is carved on a practice mill', async ({ page }) => {
   await expect(page.getByRole('region', { name: 'What is carved' })).toContainText(
     /Size40\.0 × 40\.0 × ([89]|10|11)\.\d\d?\smm/,
   );
-  await practise(page);
-  await homeIt(page);
-  await page.getByRole('button', { name: 'Move the tool down' }).focus();
-  await page.keyboard.press('Shift+PageDown');
-  await expect(chip(page)).toHaveText('Moving');
-  await expect(chip(page)).toHaveText('Ready');
+  await makeMillReady(page);
   await startButton(page).click();
   await dialog(page)
     .getByRole('radio', { name: /^Set z to the stock’s top here/ })
@@ -72,7 +67,7 @@ test('a base from a file takes the place of the built-in shapes, and says where 
   await expect(strip(page, 'Preview up to date')).toBeVisible();
   await file.setInputFiles(plane(20));
   await expect(
-    page.getByText(/The base ends before the model does: [\d,]+ of [\d,]+ vertices/),
+    page.getByRole('alert').getByText(/The base ends before the model does: \d+ of \d+ vertices/),
   ).toBeVisible();
   await page.getByRole('button', { name: 'Remove', exact: true }).click();
   await expect(strip(page, 'Preview up to date')).toBeVisible();

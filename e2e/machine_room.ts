@@ -65,6 +65,19 @@ export async function homeIt(page: Page): Promise<void> {
   await expect(position(page).getByText('unknown')).toHaveCount(0);
 }
 
+/** A practice mill, homed, its tool below its switches: from there a job would leave the machine's reach. */
+export async function makeMillReady(page: Page): Promise<void> {
+  await button(page, 'Practise without a machine').click();
+  await expect(chip(page)).toHaveText('Locked');
+  await page.locator('.machine-buttons').getByRole('button', { name: 'Home' }).click();
+  await confirm(page, /^Home the machine/, 'Home', /moves to its homing switches/);
+  await expect(chip(page)).toHaveText('Ready');
+  await page.getByRole('button', { name: 'Move the tool down' }).focus();
+  await page.keyboard.press('Shift+PageDown');
+  await expect(chip(page)).toHaveText('Moving');
+  await expect(chip(page)).toHaveText('Ready');
+}
+
 export const coordinate = async (page: Page, axis: 'X' | 'Y'): Promise<number> => {
   const text = await position(page).locator('div', { hasText: axis }).locator('b').textContent();
   return Number((text ?? '').replace('−', '-'));

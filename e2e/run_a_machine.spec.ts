@@ -13,6 +13,7 @@ import {
   coordinate,
   holdJog,
   setOrigin,
+  makeMillReady,
   makeReady,
   startIt,
   setSpeed,
@@ -213,16 +214,7 @@ test('a relief goes to a mill: its job, its way in space, its first lines', asyn
   await page.keyboard.press('PageUp');
   await expect(page.locator('.path-view .fw-marker')).toBeVisible();
 
-  await button(page, 'Practise without a machine').click();
-  await expect(chip(page)).toHaveText('Locked');
-  await page.locator('.machine-buttons').getByRole('button', { name: 'Home' }).click();
-  await confirm(page, /^Home the machine/, 'Home', /moves to its homing switches/);
-  await expect(chip(page)).toHaveText('Ready');
-  // The tool has no room above it at its switches: from there the job would leave the machine's reach.
-  await page.getByRole('button', { name: 'Move the tool down' }).focus();
-  await page.keyboard.press('Shift+PageDown');
-  await expect(chip(page)).toHaveText('Moving');
-  await expect(chip(page)).toHaveText('Ready');
+  await makeMillReady(page);
   await button(page, 'Set z here').click();
   // Two tools are two jobs, with z set between them.
   const jobs = page.getByRole('region', { name: 'Jobs, in order' });

@@ -83,7 +83,6 @@ TEST_CASE("BaseBands.RaysMeetTheStepOrTheWallBeforeIt") {
   for (const Projection projection : {Projection::perspective, Projection::orthographic}) {
     ReliefOptions options = on(BaseShape::stairs, projection);
     options.base_steps = 3;
-    options.base_turn_deg = 90;
     const ViewFrame frame = make_view_frame(test::icosphere(3), options);
     const auto bands = base_bands(options, frame);
     REQUIRE(bands.has_value());

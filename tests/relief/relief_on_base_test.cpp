@@ -130,7 +130,6 @@ ReliefOptions stairs(Projection projection, int steps, double depth_mm) {
   options.base = BaseShape::stairs;
   options.base_depth_mm = depth_mm;
   options.base_steps = steps;
-  options.base_turn_deg = 90;
   options.projection = projection;
   return options;
 }

@@ -78,6 +78,12 @@ TriangleMesh swept(const Profile& profile, double reach, double turn_deg) {
   return mesh;
 }
 
+/// Of the direction across the shape, from x towards y: stairs rise upwards, the other shapes change from left to
+/// right.
+double turn_of(const ReliefOptions& options) {
+  return options.base_turn_deg + (options.base == BaseShape::stairs ? 90 : 0);
+}
+
 /// What the shape has to cover, and how wide the plate is across it; normalised.
 struct Extent {
   double depth, reach, half_across;
@@ -88,7 +94,7 @@ Extent extent_of(const ReliefOptions& options, const ViewFrame& frame) {
   const double half_x = 0.5 + options.margin_mm / size, half_y = 0.5 * frame.image_height + options.margin_mm / size;
   // Rays spread behind the plate's front.
   const double spread = 1 + frame.kappa * (depth + options.carve_depth_mm / size);
-  const double angle = options.base_turn_deg * std::numbers::pi / 180;
+  const double angle = turn_of(options) * std::numbers::pi / 180;
   return {depth, 1.01 * spread * std::hypot(half_x, half_y),
           std::abs(std::cos(angle)) * half_x + std::abs(std::sin(angle)) * half_y};
 }
@@ -115,7 +121,7 @@ std::optional<BaseBands> base_bands(const ReliefOptions& options, const ViewFram
     depth.push_back(extent.depth * k / (options.base_steps - 1));
     if (k > 0) border.push_back(extent.half_across * (2.0 * k / options.base_steps - 1));
   }
-  return BaseBands(depth, border, options.base_turn_deg);
+  return BaseBands(depth, border, turn_of(options));
 }
 
 TriangleMesh base_shape(const ReliefOptions& options, const ViewFrame& frame) {
@@ -128,15 +134,15 @@ TriangleMesh base_shape(const ReliefOptions& options, const ViewFrame& frame) {
         throw Error(ErrorCode::invalid_input, "base_depth_mm",
                     "The cylinder would have to be deeper than half its width: make the base's depth less than " +
                         with_digits(std::floor(half_across * size), 4) + " mm, or the relief wider.");
-      return swept(cylinder(depth, reach, half_across), reach, options.base_turn_deg);
+      return swept(cylinder(depth, reach, half_across), reach, turn_of(options));
     case BaseShape::wave:
       if (pitch * max_waves < 2 * reach)
         throw Error(ErrorCode::invalid_input, "base_pitch_mm",
                     "The waves are too short for this width: make them at least " +
                         with_decimals(2 * reach * size / max_waves + 0.05, 1) + " mm long.");
-      return swept(wave(depth, reach, pitch), reach, options.base_turn_deg);
-    case BaseShape::stairs: return swept(stairs(*base_bands(options, frame), reach), reach, options.base_turn_deg);
-    default: return swept(groove(depth, reach, pitch), reach, options.base_turn_deg);
+      return swept(wave(depth, reach, pitch), reach, turn_of(options));
+    case BaseShape::stairs: return swept(stairs(*base_bands(options, frame), reach), reach, turn_of(options));
+    default: return swept(groove(depth, reach, pitch), reach, turn_of(options));
   }
 }
 

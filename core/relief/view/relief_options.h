@@ -105,7 +105,7 @@ struct ReliefOptions {
           .slider(2, 12),
       parameter(
           "base_turn_deg", &ReliefOptions::base_turn_deg, "Turn of the base", unit::degrees, -180, 180,
-          "Turns the base on the plate. At 0° waves, groove and cylinder run upwards; at 90° they run across, and stairs rise towards the back.")
+          "Turns the base on the plate, counter-clockwise. At 0° waves, groove and cylinder run upwards, and stairs rise upwards, away from the viewer.")
           .group("Base")
           .only_with("base", "cylinder", "wave", "groove", "stairs")
           .slider(-90, 90),

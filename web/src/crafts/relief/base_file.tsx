@@ -19,9 +19,11 @@ export function BaseFile({ session }: { readonly session: ReliefSession }) {
           <Button onClick={() => session.dropBase()}>Remove</Button>
         </div>
       ) : (
-        <Button onClick={choose} title="A surface in millimetres: x right, y up, z towards the viewer">
-          Base from a file
-        </Button>
+        <div class="row">
+          <Button onClick={choose} title="A surface in millimetres: x right, y up, z towards the viewer">
+            Base from a file
+          </Button>
+        </div>
       )}
       <input
         ref={input}

@@ -9,6 +9,7 @@
 #include "geometry/mesh/adjacency.h"
 #include "geometry/queries/ray_caster.h"
 #include "relief/appearance_energy.h"
+#include "relief/balanced_relief.h"
 #include "relief/base/depth_bounds.h"
 #include "relief/baselines.h"
 
@@ -16,6 +17,7 @@ namespace formwright {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double balanced_hidden_weight = 0.01;  // at most: hidden parts only have to give way
 // About 3.9 kB a vertex: 6 GB natively, and what fits into the 4 GB that WASM can have.
 constexpr int max_vertices = sizeof(void*) > 4 ? 1'500'000 : 600'000;
 
@@ -82,6 +84,14 @@ bool can_hold(const InequalityRow& row, const DepthBounds& bounds, const Bounded
   return !(best < row.bound);
 }
 
+/// w_i of eq. (3.13).
+Eigen::VectorXd vertex_weights(const Visibility& visibility, double hidden_weight) {
+  Eigen::VectorXd weights(static_cast<Eigen::Index>(visibility.vertex.size()));
+  for (Eigen::Index i = 0; i < weights.size(); ++i)
+    weights[i] = visibility.vertex[static_cast<std::size_t>(i)] ? 1.0 : hidden_weight;
+  return weights;
+}
+
 double order_violation(const std::vector<InequalityRow>& rows, const Eigen::VectorXd& u) {
   double worst = 0;
   for (const InequalityRow& row : rows) {
@@ -136,10 +146,7 @@ ReliefSolver::ReliefSolver(const TriangleMesh& mesh, const ReliefOptions& option
     throw Error(ErrorCode::invalid_input, "direction",
                 "Nothing of the model is visible from this viewpoint: choose another looking direction.");
   context.progress(0.25, "Measuring the surface");
-  Eigen::VectorXd weights = Eigen::VectorXd::Ones(frame_.P.rows());
-  for (Eigen::Index i = 0; i < weights.size(); ++i)
-    if (!visibility_.vertex[static_cast<std::size_t>(i)]) weights[i] = options.hidden_weight;
-  energy_ = std::make_unique<AppearanceEnergy>(frame_, F_, weights);
+  energy_ = std::make_unique<AppearanceEnergy>(frame_, F_, vertex_weights(visibility_, options.hidden_weight));
   SparseMatrix Q = energy_->lower_hessian(context);
   // The mean curvature scale of the mesh sits in Q; a unit diagonal keeps every tolerance below free of it.
   Q *= 1 / Q.diagonal().mean();
@@ -162,9 +169,29 @@ BoundedQpSolution ReliefSolver::solve_on_base(BoundedQpConstraints& constraints,
   return qp_.solve(constraints, options, context);
 }
 
+int ReliefSolver::balance(const ReliefOptions& options, const DepthBounds& bounds,
+                          const BoundedQpConstraints& constraints, bool flat, Eigen::VectorXd& u, Context& context) {
+  if (!balanced_) {
+    const AppearanceEnergy energy(frame_, F_,
+                                  vertex_weights(visibility_, std::min(balanced_hidden_weight, options.hidden_weight)));
+    balanced_ = std::make_unique<BalancedSolver>(frame_, F_, visibility_, energy.lower_hessian(context), context);
+  }
+  const BalancedResult balanced = balanced_relief(
+      *balanced_,
+      {frame_, visibility_, bounds, flat, (options.thickness_mm + options.carve_depth_mm) / options.width_mm,
+       constraints.lower, constraints.upper, constraints.rows},
+      u, BalancedSettings{}, context);
+  u = balanced.u;
+  return balanced.steps;
+}
+
 Relief ReliefSolver::solve(const ReliefOptions& options, const BaseSurface& base, Context& context) {
   const DepthBounds bounds = depth_bounds(frame_, visibility_, base, options, context);
   BoundedQpConstraints constraints = constraints_of(frame_, bounds);
+  if (options.appearance == Appearance::balanced && bounds.groups > 1)
+    throw Error(
+        ErrorCode::invalid_input, "appearance",
+        "On a base in steps the relief is made with the appearance \"detail\" only: choose it, or another base.");
   // On a plate lent, not copied: at 300k vertices the rows are tens of megabytes.
   const bool lent = base.is_flat();
   struct Lent {
@@ -187,23 +214,30 @@ Relief ReliefSolver::solve(const ReliefOptions& options, const BaseSurface& base
   qp_options.method = options.method;
   qp_options.violation_tolerance = 1e-9 * (options.thickness_mm + options.carve_depth_mm) / options.width_mm;
   {
-    const auto span = context.span(0, 0.9, "Fitting into the thickness");
+    const auto span =
+        context.span(0, options.appearance == Appearance::detail ? 0.9 : 0.4, "Fitting into the thickness");
     relief.qp = solve_on_base(constraints, qp_options, lent, context);
   }
-  context.progress(0.9, "Comparing normals");
   const Eigen::VectorXd m = scales(constraints, relief.qp);
   relief.u = settled(frame_, constraints, relief.qp.u, m);
+  if (options.appearance == Appearance::balanced) {
+    const auto span = context.span(0.4, 0.9, "Restoring broad forms");
+    relief.balanced_steps = balance(options, bounds, constraints, base.is_flat(), relief.u, context);
+  }
+  context.progress(0.9, "Comparing normals");
   relief.moved = frame_.moved(relief.u);
   // In steps, the parts look from the viewpoint as the surface does in one piece.
   const bool in_steps = bounds.groups > 1;
   const Eigen::VectorXd& looked_at = in_steps ? relief.qp.u : relief.u;
   relief.energy = (*energy_)(looked_at);
-  relief.normal_error = normal_error(frame_, F_, visibility_, in_steps ? frame_.moved(looked_at) : relief.moved);
+  relief.seen = in_steps ? frame_.moved(looked_at) : relief.moved;
+  relief.normal_error = normal_error(frame_, F_, visibility_, relief.seen);
   if (in_steps) relief.pieces = cut_into_bands(frame_, F_, relief.qp.u, m, bounds, *base.bands(), context);
   const Eigen::VectorXd linear = linear_compression(
       frame_, in_steps ? depth_bounds(frame_, visibility_, BaseSurface(), options, context) : bounds);
   relief.energy_linear = (*energy_)(linear);
-  relief.normal_error_linear = normal_error(frame_, F_, visibility_, frame_.moved(linear));
+  relief.seen_linear = frame_.moved(linear);
+  relief.normal_error_linear = normal_error(frame_, F_, visibility_, relief.seen_linear);
 
   const double size = options.width_mm;
   relief.lambda_mm = size * ray_lengths(frame_, relief.u);
@@ -231,7 +265,8 @@ Relief ReliefSolver::solve(const ReliefOptions& options, const BaseSurface& base
 
 double ReliefSolver::memory_mb() const {
   const double n = static_cast<double>(frame_.P.rows());
-  return qp_.memory_mb() + 1e-6 * (n * 300 + static_cast<double>(order_rows_.size()) * 200);
+  return qp_.memory_mb() + (balanced_ ? balanced_->memory_mb() : 0) +
+         1e-6 * (n * 300 + static_cast<double>(order_rows_.size()) * 200);
 }
 
 }  // namespace formwright

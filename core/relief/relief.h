@@ -30,8 +30,11 @@ struct Relief {
   int order_rows = 0;
   int order_rows_left_out = 0;   // those that the bounds contradict
   int vertices_beyond_base = 0;  // free, because their rays miss the base
-  ReliefPieces pieces;           // on a base in steps; else empty
-  BoundedQpSolution qp;          // statistics; qp.u is in the gauge of mean s = 1
+  int balanced_steps = 0;        // of BalancedSolver; 0 for Appearance::detail
+  Positions seen,
+      seen_linear;       // n x 3, what looks like the model: `moved`, in steps before it is cut; and plain scaling
+  ReliefPieces pieces;   // on a base in steps; else empty
+  BoundedQpSolution qp;  // statistics; qp.u is in the gauge of mean s = 1
 };
 
 /// Everything that depends on the mesh and the viewpoint alone, the factorisation included: other bounds
@@ -47,7 +50,8 @@ class ReliefSolver {
   static std::string key(const ReliefOptions& options);
 
   /// `base`: in view coordinates, of the same options.
-  /// Throws Error: invalid_input (see depth_bounds), could_not_solve, cancelled.
+  /// Throws Error: invalid_input (see depth_bounds; the balanced appearance on a base in steps), could_not_solve,
+  /// cancelled.
   Relief solve(const ReliefOptions& options, const BaseSurface& base, Context& context);
   /// On a flat base.
   Relief solve(const ReliefOptions& options, Context& context) { return solve(options, BaseSurface(), context); }
@@ -62,12 +66,16 @@ class ReliefSolver {
  private:
   BoundedQpSolution solve_on_base(BoundedQpConstraints& constraints, const BoundedQpOptions& options, bool flat,
                                   Context& context);
+  /// Moves `u` from the optimum of eq. (3.13) to the balanced relief; the number of steps.
+  int balance(const ReliefOptions& options, const struct DepthBounds& bounds, const BoundedQpConstraints& constraints,
+              bool flat, Eigen::VectorXd& u, Context& context);
 
   ViewFrame frame_;
   Triangles F_;
   Visibility visibility_;
   std::vector<InequalityRow> order_rows_;
   std::unique_ptr<class AppearanceEnergy> energy_;
+  std::unique_ptr<class BalancedSolver> balanced_;  // made by the first solve that needs it
   BoundedQp qp_;
   double seconds_setup_ = 0, seconds_factorise_ = 0;
 

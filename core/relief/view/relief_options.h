@@ -38,6 +38,13 @@ struct EnumNames<BaseMisses> {
   static constexpr std::array<std::string_view, 2> labels{"Refuse", "Leave free"};
 };
 
+enum class Appearance { detail, balanced };
+template <>
+struct EnumNames<Appearance> {
+  static constexpr std::array<std::string_view, 2> names{"detail", "balanced"};
+  static constexpr std::array<std::string_view, 2> labels{"Crisp detail", "Detail and broad forms"};
+};
+
 struct ReliefOptions {
   double thickness_mm = 5;
   double width_mm = 120;
@@ -56,10 +63,12 @@ struct ReliefOptions {
   double field_of_view_deg = 20;
   std::optional<double> distance_mm;
   BoundedVertices bounded_vertices = BoundedVertices::all;
+  Appearance appearance = Appearance::detail;
   double hidden_weight = 1;
   bool depth_order = true;
   double pixel_mm = 0.2;
   QpMethod method = QpMethod::automatic;
+  bool compare_pictures = false;
 
   static constexpr auto parameters = std::tuple{
       parameter(
@@ -145,6 +154,10 @@ struct ReliefOptions {
           "Flat keeps the whole model within the thickness. May sink lets the hidden back go deeper than the plate's face, which distorts the visible side less.")
           .group("Shape"),
       parameter(
+          "appearance", &ReliefOptions::appearance, "Appearance",
+          "Crisp detail keeps fine detail best and flattens broad forms. Detail and broad forms keeps soft, large forms too, so that the relief looks more like the model; it takes about twice as long.")
+          .group("Shape"),
+      parameter(
           "hidden_weight", &ReliefOptions::hidden_weight, "How much the back matters", unit::none, 0.001, 1,
           "How much the shape of parts hidden from the viewer matters. 1: as much as the visible parts; smaller values let hidden parts distort more so that visible ones distort less.")
           .group("Shape")
@@ -162,6 +175,11 @@ struct ReliefOptions {
       parameter(
           "method", &ReliefOptions::method, "Solver",
           "Numerical method; all give the same relief. Exchange is faster when the relief touches its limits at few points, interior point when at many; automatic chooses.")
+          .group("Output")
+          .advanced(),
+      parameter(
+          "compare_pictures", &ReliefOptions::compare_pictures, "Compare the pictures",
+          "Measures how alike relief and model look from the viewpoint under 32 lights, and reports it beside the shading difference. Takes about two seconds more.")
           .group("Output")
           .advanced()};
 };

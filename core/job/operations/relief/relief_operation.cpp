@@ -11,6 +11,7 @@
 #include "job/operations/relief/relief_base.h"
 #include "relief/height_map.h"
 #include "relief/relief.h"
+#include "relief/seen/seen_difference.h"
 
 namespace formwright {
 namespace {
@@ -51,6 +52,14 @@ std::vector<ReportField> relief_report_fields() {
        "Mean angle between the surface normals of relief and model over the picture seen from the viewpoint."},
       {"normal_error_linear_mean_deg_image", "Shading difference in the picture of plain scaling", "°",
        "Mean angle between the surface normals over the picture if all depths are simply scaled to the thickness."},
+      {"picture_similarity", "Likeness of the pictures", "",
+       "Mean structural similarity (SSIM) of pictures of relief and model from the viewpoint under 32 lights, one arc minute a pixel; 1 is equal. Only with compare_pictures."},
+      {"picture_similarity_linear", "Likeness of the pictures of plain scaling", "",
+       "The same if all depths are simply scaled to the thickness."},
+      {"false_edges_percent", "False edges", "%",
+       "Share of the relief's picture that lies on edges which the model does not have. Only with compare_pictures."},
+      {"false_edges_linear_percent", "False edges of plain scaling", "%",
+       "The same if all depths are simply scaled to the thickness."},
       {"bound_violation_max_mm", "Largest excess over the thickness", "mm",
        "Largest distance by which a vertex leaves the allowed thickness; practically 0."},
       {"order_violation_max_mm", "Largest depth order violation", "mm",
@@ -63,6 +72,8 @@ std::vector<ReportField> relief_report_fields() {
       {"kkt_residual", "KKT residual", "",
        "Relative error of the optimality conditions (Karush-Kuhn-Tucker) at the solution; practically 0."},
       {"rounds", "Iterations", "", "Number of iterations of the numerical method."},
+      {"balanced_steps", "Steps for broad forms", "",
+       "Number of steps that the appearance \"balanced\" took after the numerical method; 0 for \"detail\"."},
       {"active_constraints", "Active limits", "", "Number of points where the relief touches a limit on its depth."},
       {"method_used", "Solver used", "", "The numerical method that was used: exchange or interior_point."},
       {"factor_reused", "Factorisation reused", "",
@@ -171,6 +182,7 @@ void report_relief(Json& report, const LoadedModel& loaded, const ReliefSolver& 
   report["vertices_beyond_base"] = relief.vertices_beyond_base;
   report["kkt_residual"] = relief.qp.kkt_residual;
   report["rounds"] = relief.qp.rounds;
+  report["balanced_steps"] = relief.balanced_steps;
   report["active_constraints"] = relief.qp.active_constraints;
   report["method_used"] = EnumNames<QpMethod>::names.at(static_cast<std::size_t>(relief.qp.method_used));
   const double size = options.width_mm;
@@ -183,6 +195,16 @@ void report_relief(Json& report, const LoadedModel& loaded, const ReliefSolver& 
   report["up"] = vector_json(frame.axes.row(1).transpose());
   report["plate_centre_mm"] = vector_json(frame.to_model(Vec3(0, 0, 0), size));
   report["distance_mm"] = straight ? Json(nullptr) : Json(size / frame.kappa);
+}
+
+void report_pictures(Json& report, const ReliefSolver& solver, const Relief& relief, Context& context) {
+  const SeenComparison comparison(solver.frame(), solver.F(), 1, context);
+  const SeenDifference ours = comparison.with(relief.seen, context),
+                       plain = comparison.with(relief.seen_linear, context);
+  report["picture_similarity"] = ours.similarity;
+  report["picture_similarity_linear"] = plain.similarity;
+  report["false_edges_percent"] = ours.false_edges_percent;
+  report["false_edges_linear_percent"] = plain.false_edges_percent;
 }
 
 OperationResult run_relief(const OperationCall& call, const ReliefOptions& options) {
@@ -216,6 +238,7 @@ OperationResult run_relief(const OperationCall& call, const ReliefOptions& optio
   Json& report = result.report;
   report_relief(report, *loaded, *solver, relief, options);
   report["factor_reused"] = reused;
+  if (options.compare_pictures) report_pictures(report, *solver, relief, context);
 
   const ViewFrame& frame = solver->frame();
   const PlateSize plate{options.width_mm + 2 * options.margin_mm,

@@ -277,7 +277,7 @@ TEST_CASE("BalancedRelief.KeepsToACurvedBaseAndRefusesSteps") {
   CHECK(relief.normal_error.mean_deg_image < solver.solve(options, wave, context).normal_error.mean_deg_image);
   options.appearance = Appearance::balanced;
   options.base = BaseShape::stairs;
-  const BaseSurface stairs(base_shape(options, solver.frame()));
+  const BaseSurface stairs(base_shape(options, solver.frame()), base_bands(options, solver.frame()));
   try {
     solver.solve(options, stairs, context);
     FAIL("accepted");

@@ -7,6 +7,7 @@ set -euo pipefail
 
 cd "$FORMWRIGHT_ROOT"
 setup/build.sh native wasm
+cmake --build --preset native --target benchmarks >&2
 mapfile -t programs < <(find build -type f -executable -name 'bench_*' | sort)
 [ ${#programs[@]} -gt 0 ] || fail "no benchmark was built" "name its CMake target bench_<what>"
 for program in "${programs[@]}"; do

@@ -80,10 +80,8 @@ describe('standing a model otherwise', () => {
     const cube = (side: number) => Float32Array.from([0, 0, 0, side, 0, 0, 0, side, 0, 0, 0, side]);
     const size_mm = (side: number, opening_mm: number) =>
       side *
-      (placeModel(
-        { ...standard, clamp_opening_x_mm: opening_mm, clamp_opening_y_mm: 300 },
-        cube(side),
-      )?.scale ?? 0);
+      (placeModel({ ...standard, clamp_opening_x_mm: opening_mm, clamp_opening_y_mm: 300 }, cube(side))
+        ?.scale ?? 0);
     expect(size_mm(190, 200)).toBeCloseTo(190, 4);
     expect(size_mm(191, 200)).toBeCloseTo(100, 4);
     expect(size_mm(1, 80)).toBeCloseTo(70, 4);

@@ -20,9 +20,14 @@ FAILED=0
 COMPLETE=no  # until the last stage has passed; an interruption is a failure
 FLAKY=()
 LOG="$(mktemp)"
+BESIDE=''         # process group of what is built while other stages run
+BESIDE_LOG="$(mktemp)"
+BESIDE_START=0
+BESIDE_STATUS=0
 
 finish() {
-  rm -f "$LOG"
+  [ -z "$BESIDE" ] || kill -- "-$BESIDE" 2>/dev/null || true
+  rm -f "$LOG" "$BESIDE_LOG"
   if [ "$COMPLETE" = no ] && [ "$FAILED" -eq 0 ]; then FAILED=1; fi
   if [ "$PASSED" -eq 0 ] && [ "$FAILED" -eq 0 ]; then FAILED=1; fi
   if [ ${#FLAKY[@]} -gt 0 ]; then
@@ -59,6 +64,25 @@ stage() {  # name, runner or -, command...
   fi
 }
 
+# Stories wait for timers and pictures: a build of the lowest priority takes what they leave of the processors.
+begin_beside() {  # command...
+  BESIDE_START=$SECONDS
+  set -m  # a process group of its own, so that finish() ends the compilers, too
+  nice -n 19 "$@" >"$BESIDE_LOG" 2>&1 </dev/null &
+  BESIDE=$!
+  set +m
+}
+await_beside() {
+  BESIDE_STATUS=0
+  wait "$BESIDE" || BESIDE_STATUS=$?
+  BESIDE=''
+}
+show_beside() {
+  cat "$BESIDE_LOG"
+  printf 'begun %d s ago, beside other stages\n' "$((SECONDS - BESIDE_START))"
+  return "$BESIDE_STATUS"
+}
+
 run_stories() { FORMWRIGHT_BACKEND="$1" npm run e2e; }
 
 # What failed, again and last: where only the end of a log is seen, it is what is needed.
@@ -81,19 +105,21 @@ run_ctest() {  # preset, folder of its build
 main() {
   stage 'set-up' - setup/all.sh --test
   stage 'C++ formatting' - setup/format.sh --check
-  stage 'native build' - setup/build.sh native
-  stage 'native tests' ctest run_ctest native build
-  stage 'sanitizer build' - setup/build.sh asan
-  stage 'sanitizer tests' ctest run_ctest asan build-asan
-  stage 'WebAssembly build' - setup/build.sh wasm
-  stage 'WebAssembly tests' ctest run_ctest wasm build-wasm
   stage 'page: packages' - setup/build.sh npm-packages
   stage 'page: types' - npm run types
   stage 'page: lint' - npm run lint
+  stage 'native build' - setup/build.sh native
+  stage 'native tests' ctest run_ctest native build
+  stage 'WebAssembly build' - setup/build.sh wasm
+  stage 'WebAssembly tests' ctest run_ctest wasm build-wasm
   stage 'page: unit tests' vitest npm test
   stage 'page: build' - setup/build.sh web
+  begin_beside setup/build.sh asan
   stage 'browser tests, solving in the page' playwright run_stories wasm
   stage 'browser tests, with the native worker' playwright run_stories native
+  await_beside
+  stage 'sanitizer build' - show_beside
+  stage 'sanitizer tests' ctest run_ctest asan build-asan
   COMPLETE=yes
   echo
 }

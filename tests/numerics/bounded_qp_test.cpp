@@ -207,7 +207,7 @@ TEST_CASE("BoundedQp.InteriorPointEqualsExchange") {
   }
 }
 
-TEST_CASE("BoundedQp.TakingBoundsOutOfTheFactorisationChangesNothing") {
+TEST_CASE("BoundedQp.HandingOverToTheInteriorPointChangesNothing") {
   Problem p = relief(25, 20, 0.2);
   for (const bool with_order_rows : {false, true}) {
     if (with_order_rows) {  // neighbours held half-way to where the middle of the slab, which is feasible, has them
@@ -223,13 +223,15 @@ TEST_CASE("BoundedQp.TakingBoundsOutOfTheFactorisationChangesNothing") {
     BoundedQp qp;
     qp.set_energy(p.lower_Q, p.component, {}, context);
     BoundedQpOptions options;
-    options.max_active_in_pool = pool.active_constraints / 4;
-    REQUIRE(options.max_active_in_pool > 5);
-    const auto base = qp.solve(p.constraints, options, context);
-    CHECK((base.u - pool.u).cwiseAbs().maxCoeff() < 1e-8);
-    CHECK_THAT(base.objective, WithinAbs(pool.objective, 1e-10 * pool.objective));
-    CHECK(base.kkt_residual < 1e-9);
-    CHECK(base.method_used == QpMethod::exchange);
+    for (const double work : {1.0, 1e5, 1e7}) {
+      options.max_exchange_work = work;
+      const auto handed = qp.solve(p.constraints, options, context);
+      CHECK((handed.u - pool.u).cwiseAbs().maxCoeff() < 1e-8);
+      CHECK_THAT(handed.objective, WithinAbs(pool.objective, 1e-10 * pool.objective));
+      CHECK(handed.kkt_residual < 1e-9);
+      CHECK(handed.relative_gap == 0);
+      if (work == 1) CHECK(handed.method_used == QpMethod::interior_point);
+    }
   }
 }
 

@@ -113,8 +113,9 @@ BoundedQp::Implementation::Outcome BoundedQp::Implementation::solve(const Rows& 
   outcome.method = QpMethod::interior_point;
   Stopwatch watch;
   const InteriorPointStart start{so_far.u, so_far.m, so_far.active, so_far.multiplier};
-  const InteriorPointResult point =
-      solve_interior_point(energy, newton, rows, start, {.max_iterations = options.max_iterations}, context);
+  const InteriorPointResult point = solve_interior_point(
+      energy, newton, rows, start,
+      {.violation = 0.1 * options.violation_tolerance, .max_iterations = options.max_iterations}, context);
   outcome.iterations = point.iterations;
   outcome.result = polish_active_set(energy, newton, rows, point, options.violation_tolerance, context);
   if (outcome.result.stopped) outcome.relative_gap = point.relative_gap;

@@ -133,6 +133,7 @@ void Polish::solve(double target, Context& context) {
       double& size = system_.held(i) ? force_size_ : unbalanced;
       size = std::max(size, std::abs(left_[i]));
     }
+    if (gauge.size() > 0) open = std::max(open, std::abs(gauge.dot(u_)));
     if (correction == max_corrections || (open <= 0.1 * target && unbalanced <= balance_to_reach * force_size_)) return;
     const double c_left = gauge.size() > 0 ? -gauge.dot(u_) : 0;
     const NewtonSystem::Step step = system_.solve(spring_force - left_, b, c_left, 0);
@@ -161,6 +162,13 @@ int Polish::exchange(double target) {
     if (!active_.order[static_cast<std::size_t>(r)] || y_[r] >= -zero_force * force_size_) continue;
     active_.order[static_cast<std::size_t>(r)] = 0;
     ++wrong;
+  }
+  // Springs of rows that nearly repeat each other settle between them: the looser one does not hold.
+  for (Eigen::Index r = 0; r < y_.size(); ++r) {
+    if (!active_.order[static_cast<std::size_t>(r)]) continue;
+    const double missing = rows_.deficit({Side::order, static_cast<int>(r)}, u_, m_);
+    if (missing < -target) active_.order[static_cast<std::size_t>(r)] = 0;
+    if (std::abs(missing) > target) ++wrong;
   }
   Rows::Violations violations;
   rows_.evaluate(u_, m_, violations);
@@ -203,7 +211,13 @@ ExchangeResult Polish::result() const {
 ExchangeResult Polish::run(double tolerance, Context& context) {
   int fewest = std::numeric_limits<int>::max(), patience = polish_rounds_without_gain;
   for (int round = 0; round < max_polish_rounds; ++round) {
-    solve(polish_target * tolerance, context);
+    try {
+      solve(polish_target * tolerance, context);
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::could_not_solve) throw;
+      break;
+    }
+    if (!u_.allFinite() || !m_.allFinite()) break;
     const int wrong = exchange(polish_target * tolerance);
     if (wrong == 0) {
       ExchangeResult found = result();

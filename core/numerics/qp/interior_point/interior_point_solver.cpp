@@ -15,6 +15,8 @@ namespace {
 constexpr double boundary_part = 0.9995;
 constexpr double start_slack = 0.05;  // of the distance between the bounds
 constexpr double balance_tolerance = 1e-9;
+constexpr double zero_energy = 1e-18;  // of the stiffness times the square of the lengths
+constexpr int steps_after_small_gap = 6;
 constexpr int max_corrections_of_step = 2;
 constexpr double long_step = 0.9;
 // Slacks and multipliers of one family of rows, g^T u + slope m - s = bound, s, y >= 0.
@@ -230,6 +232,7 @@ double InteriorPoint::correct(double step, double wanted_product) {
 
 InteriorPointResult InteriorPoint::run(const InteriorPointSettings& settings, Context& context) {
   InteriorPointResult result;
+  int small_gaps = 0;
   for (;; ++result.iterations) {
     residuals();
     const double gap = complementarity(), mu = gap / std::max(1.0, count()), energy = energy_.energy(u_);
@@ -243,11 +246,17 @@ InteriorPointResult InteriorPoint::run(const InteriorPointSettings& settings, Co
     for (int i = 0; i < n_; ++i) {
       if (!system_.held(i)) unbalanced = std::max(unbalanced, std::abs(force_left_[i]));
     }
-    result.relative_gap = gap / std::max(energy, std::numeric_limits<double>::min());
+    // Where nothing needs to bend, the energy is round-off.
+    const double no_energy = zero_energy * energy_.absolute_sum() * rows_.scale() * rows_.scale();
+    result.relative_gap = gap / std::max({energy, no_energy, std::numeric_limits<double>::min()});
+    const double off_gauge = system_.gauge().size() > 0 ? std::abs(system_.gauge().dot(u_)) : 0;
+    open = std::max(open, off_gauge);
     result.violation = open;
-    result.converged = result.relative_gap <= settings.relative_gap && open <= balance_tolerance * rows_.scale() &&
+    result.converged = result.relative_gap <= settings.relative_gap && open <= settings.violation &&
                        unbalanced <= balance_tolerance * force;
     context.progress(result.iterations / (result.iterations + 10.0), "Fitting into the thickness");
+    // What a few more steps do not improve is round-off.
+    if (result.relative_gap <= settings.relative_gap && ++small_gaps > steps_after_small_gap) break;
     if (result.converged || result.iterations >= settings.max_iterations || count() == 0) break;
     try {
       factorize(context);
@@ -269,7 +278,7 @@ InteriorPointResult InteriorPoint::run(const InteriorPointSettings& settings, Co
     direction();
     step = std::min(1.0, boundary_part * step_length());
     step = correct(step, sigma * mu);
-    if (!(step > 1e-12) || !std::isfinite(step)) break;
+    if (!(step > 1e-12) || !std::isfinite(step) || !du_.allFinite() || !dm_.allFinite()) break;
     u_ += step * du_;
     m_ += step * dm_;
     gauge_force_ += step * dgauge_;

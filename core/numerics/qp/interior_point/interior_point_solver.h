@@ -14,6 +14,7 @@ namespace formwright::bounded_qp_detail {
 
 struct InteriorPointSettings {
   double relative_gap = 1e-10;  // sum of slack times multiplier, of the energy: when to stop
+  double violation = 1e-10;     // by how much slacks may miss their rows then
   int max_iterations = 100;
 };
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "numerics/qp/interior_point/newton_system.h"
 
+#include <algorithm>
+#include <limits>
+
 #include "base/index.h"
 
 namespace formwright::bounded_qp_detail {
@@ -79,6 +82,10 @@ void NewtonSystem::factorize(const Springs& springs, Context& context) {
     E.row(groups_).head(groups_) = -(gauge_.transpose() * held_slope_);
     E.col(groups_).head(groups_) = E.row(groups_).head(groups_).transpose();
   }
+  // Nor do a scale or a gauge that nothing touches make the border singular.
+  for (int g = 0; g < groups_; ++g) E(g, g) += proximal_part * energy_.absolute_sum();
+  if (gauge_.size() > 0)
+    E(groups_, groups_) -= proximal_part / std::max(energy_.absolute_sum(), std::numeric_limits<double>::min());
   for (const RowKey key : held_bounds_) border_.row(key.index).setZero();
   matrix_.factorize(rows_, diagonal, springs.order, held_, context);
   border_solved_ = border_;

@@ -233,6 +233,7 @@ double InteriorPoint::correct(double step, double wanted_product) {
 InteriorPointResult InteriorPoint::run(const InteriorPointSettings& settings, Context& context) {
   InteriorPointResult result;
   int small_gaps = 0;
+  double open_before = std::numeric_limits<double>::infinity();
   for (;; ++result.iterations) {
     residuals();
     const double gap = complementarity(), mu = gap / std::max(1.0, count()), energy = energy_.energy(u_);
@@ -256,7 +257,9 @@ InteriorPointResult InteriorPoint::run(const InteriorPointSettings& settings, Co
                        unbalanced <= balance_tolerance * force;
     context.progress(result.iterations / (result.iterations + 10.0), "Fitting into the thickness");
     // What a few more steps do not improve is round-off.
-    if (result.relative_gap <= settings.relative_gap && ++small_gaps > steps_after_small_gap) break;
+    small_gaps = result.relative_gap <= settings.relative_gap && open > 0.5 * open_before ? small_gaps + 1 : 0;
+    open_before = open;
+    if (small_gaps > steps_after_small_gap) break;
     if (result.converged || result.iterations >= settings.max_iterations || count() == 0) break;
     try {
       factorize(context);

@@ -202,7 +202,7 @@ TEST_CASE("ReliefOnStairs.TheCutsKeepThePicture") {
 }
 
 TEST_CASE("ReliefOnStairs.StepsOfOneHeightAreAPlate") {
-  // One group of bounds against several that may move by themselves: never worse, and nearly the same picture.
+  // One group of bounds against several that may move by themselves: never worse.
   const TriangleMesh mesh = test::icosphere(3);
   ReliefOptions flat = stairs(Projection::orthographic, 3, 1e-2);
   flat.base = BaseShape::flat;

@@ -58,8 +58,12 @@ std::optional<std::pair<double, double>> BaseSurface::depth_range(double half_x,
   if (is_flat()) return std::pair{0.0, 0.0};
   double least = INFINITY, largest = -INFINITY;
   for (Eigen::Index f = 0; f < mesh_.F.rows(); ++f) {
-    std::vector<Vec3> polygon;
-    for (int k = 0; k < 3; ++k) polygon.emplace_back(mesh_.V.row(mesh_.F(f, k)).transpose());
+    Eigen::Matrix3d corner;  // one a row
+    for (int k = 0; k < 3; ++k) corner.row(k) = mesh_.V.row(mesh_.F(f, k));
+    const Vec3 low = corner.colwise().minCoeff(), high = corner.colwise().maxCoeff();
+    if (low.z() >= least && high.z() <= largest) continue;  // changes nothing
+    if (high.x() < -half_x || low.x() > half_x || high.y() < -half_y || low.y() > half_y) continue;
+    std::vector<Vec3> polygon{corner.row(0), corner.row(1), corner.row(2)};
     for (const auto& [axis, limit] : {std::pair{0, half_x}, std::pair{1, half_y}})
       for (const double side : {-1.0, 1.0}) polygon = clipped(polygon, axis, side, limit);
     for (const Vec3& p : polygon) {

@@ -89,7 +89,7 @@ class Cutter {
     }
   }
 
-  /// Places on a second border's edges are told apart by a number of their own, beyond the vertices.
+  /// Each place on a border gets a number above those of the vertices, so that edges that end there have a name.
   int id_of(const Corner& c) {
     return ids_.emplace(c.key(), static_cast<int>(joint_.rows() + static_cast<Eigen::Index>(ids_.size())))
         .first->second;

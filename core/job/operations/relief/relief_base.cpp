@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "job/operations/relief/relief_base.h"
 
-#include "job/contract/model_input.h"
 #include "relief/base/base_shape.h"
 
 namespace formwright {
@@ -22,15 +21,18 @@ InputInfo base_input_info() {
   return info;
 }
 
-BaseSurface relief_base(const OperationCall& call, const ReliefOptions& options, const ViewFrame& frame) {
-  if (call.inputs.contains(base_file)) {
-    if (options.base != BaseShape::flat)
-      throw Error(ErrorCode::invalid_input, "base",
-                  "The base is given twice, as a file and as a built-in shape: leave one of them out.");
-    return BaseSurface(base_from_file(load_model(call, base_file)->model.mesh, options));
-  }
-  return options.base == BaseShape::flat ? BaseSurface()
-                                         : BaseSurface(base_shape(options, frame), base_bands(options, frame));
+std::shared_ptr<const LoadedModel> load_base(const OperationCall& call, const ReliefOptions& options) {
+  if (!call.inputs.contains(base_file)) return nullptr;
+  if (options.base != BaseShape::flat)
+    throw Error(ErrorCode::invalid_input, "base",
+                "The base is given twice, as a file and as a built-in shape: leave one of them out.");
+  return load_model(call, base_file);
+}
+
+BaseSurface relief_base(const LoadedModel* file, const ReliefOptions& options, const ViewFrame& frame) {
+  if (file != nullptr) return BaseSurface(base_from_file(file->model.mesh, options));
+  if (options.base == BaseShape::flat) return {};
+  return BaseSurface(base_shape(options, frame), base_bands(options, frame));
 }
 
 }  // namespace formwright

@@ -225,10 +225,11 @@ std::vector<std::string> notes_of(const BoundedQpSolution& qp) {
 
 OperationResult run_relief(const OperationCall& call, const ReliefOptions& options) {
   Context& context = call.context;
-  std::shared_ptr<const LoadedModel> loaded;
+  std::shared_ptr<const LoadedModel> loaded, base_model;
   {
     const auto span = context.span(0, 0.1, "Reading the model");
     loaded = load_model(call);
+    base_model = load_base(call, options);
   }
   const std::string key = "relief:" + loaded->key + ":" + ReliefSolver::key(options);
   auto solver = call.session.find<ReliefSolver>(key);
@@ -241,12 +242,14 @@ OperationResult run_relief(const OperationCall& call, const ReliefOptions& optio
     call.session.keep(key, solver, solver->memory_mb());
   }
   Stopwatch watch;
-  const BaseSurface base = relief_base(call, options, solver->frame());
+  const BaseSurface base = relief_base(base_model.get(), options, solver->frame());
   Relief relief;
   {
     const auto span = context.span(0.55, 0.9, "Fitting into the thickness");
     relief = solver->solve(options, base, context);
   }
+  // The balanced appearance has a factorisation of its own, made by its first solve.
+  if (options.appearance == Appearance::balanced) call.session.keep(key, solver, solver->memory_mb());
   const double seconds_solve = watch.lap();
 
   context.progress(0.9, "Writing");

@@ -3,14 +3,15 @@
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/matchers/catch_matchers_floating_point.hpp>
 
-#include "numerics/bounded_qp_reference.h"
-#include "numerics/qp/bounded_qp.h"
+#include "numerics/bounded_qp_problems.h"
 
 namespace formwright {
 namespace {
 using Catch::Matchers::WithinAbs;
 
 using test::infinity;
+using test::QpProblem;
+using test::solve;
 
 /// The bi-Laplacian of a path with n unknowns, `copies` of them side by side.
 SparseMatrix beams(int n, int copies) {
@@ -28,16 +29,10 @@ SparseMatrix beams(int n, int copies) {
   return test::lower_triangle(Q);
 }
 
-struct Problem {
-  SparseMatrix lower_Q;
-  std::vector<int> component;
-  BoundedQpConstraints constraints;
-};
-
 /// `copies` beams of n unknowns, clamped at both ends, each `gap` above the one before; the lowest is lifted by 1 in
 /// the middle. Between beams, a row for every unknown and one for a point of the lower beam just beside it.
-Problem stacked_beams(int n, int copies, double gap) {
-  Problem p{beams(n, copies), {}, {}};
+QpProblem stacked_beams(int n, int copies, double gap) {
+  QpProblem p{beams(n, copies), {}, {}};
   BoundedQpConstraints& c = p.constraints;
   const int all = n * copies;
   c.lower = Eigen::VectorXd::Constant(all, -infinity);
@@ -60,15 +55,6 @@ Problem stacked_beams(int n, int copies, double gap) {
   return p;
 }
 
-BoundedQpSolution solve(const Problem& p, QpMethod method) {
-  Context context;
-  BoundedQp qp;
-  qp.set_energy(p.lower_Q, p.component, {}, context);
-  BoundedQpOptions options;
-  options.method = method;
-  return qp.solve(p.constraints, options, context);
-}
-
 TEST_CASE("NearlyTouchingSheets.EveryBeamTakesTheShapeOfTheLowest") {
   // Beam k alone, lifted by 1 - k gap, is the lowest beam's cubic times that; it keeps its distance elsewhere, so that
   // it is the optimum with all rows. However small the gap is.
@@ -76,7 +62,7 @@ TEST_CASE("NearlyTouchingSheets.EveryBeamTakesTheShapeOfTheLowest") {
   const double ratio = -(3.0 * half * half - 2 * half + 1) / (2.0 * half - 1),
                b = 1 / (half * (half - 1.0) * (ratio + half));
   for (const double gap : {0.1, 1e-4, 1e-8, 1e-12}) {
-    const Problem p = stacked_beams(n, copies, gap);
+    const QpProblem p = stacked_beams(n, copies, gap);
     for (const QpMethod method : {QpMethod::automatic, QpMethod::interior_point}) {
       INFO("gap " << gap << ", method " << static_cast<int>(method));
       const auto s = solve(p, method);
@@ -94,7 +80,7 @@ TEST_CASE("NearlyTouchingSheets.EveryBeamTakesTheShapeOfTheLowest") {
 }
 
 TEST_CASE("NearlyTouchingSheets.RowsRepeatedManyTimesChangeNothing") {
-  Problem p = stacked_beams(25, 2, 1e-7);
+  QpProblem p = stacked_beams(25, 2, 1e-7);
   const auto once = solve(p, QpMethod::interior_point);
   const std::vector<InequalityRow> rows = p.constraints.rows;
   for (int copy = 1; copy <= 20; ++copy) {

@@ -118,9 +118,25 @@ BoundedQp::Implementation::Outcome BoundedQp::Implementation::solve(const Rows& 
       {.violation = 0.1 * options.violation_tolerance, .max_iterations = options.max_iterations}, context);
   outcome.iterations = point.iterations;
   outcome.result = polish_active_set(energy, newton, rows, point, options.violation_tolerance, context);
-  if (outcome.result.stopped) outcome.relative_gap = point.relative_gap;
   add_up(so_far, outcome.result);
   seconds_interior = watch.lap();
+  if (!outcome.result.stopped) return outcome;
+  // Without a point that satisfies every constraint, the interior point's own would not either.
+  if (!rows.constraints().inside_u.size()) {
+    const ExchangeResult before = std::move(outcome.result);
+    settings.max_work = std::max(min_exchange_work, exchange_only_share * interior_point_work());
+    const std::vector<RowKey> base = base_of(rows);
+    outcome.result = exchange.solve(rows, base, settings, context);
+    if (!outcome.result.stopped) {
+      add_base_reactions(energy, rows, base, outcome.result);
+      add_up(before, outcome.result);
+      outcome.method = QpMethod::exchange;
+      return outcome;
+    }
+    exchange.forget();
+    outcome.result = before;
+  }
+  outcome.relative_gap = point.relative_gap;
   return outcome;
 }
 

@@ -2,8 +2,8 @@
 #include "job/operations/relief/relief_operation.h"
 
 #include <cmath>
-#include <cstdio>
 
+#include "base/format.h"
 #include "geometry/mesh/adjacency.h"
 #include "formats/mesh_io.h"
 #include "formats/png/png16.h"
@@ -214,13 +214,26 @@ void report_pictures(Json& report, const ReliefSolver& solver, const Relief& rel
 }
 
 /// What the maker should know about how the relief was found.
-std::vector<std::string> notes_of(const BoundedQpSolution& qp) {
-  if (!(qp.relative_gap > gap_worth_a_note)) return {};
-  char percent[32];
-  std::snprintf(percent, sizeof percent, "%.2g", 100 * qp.relative_gap);
-  return {
-      std::string("The solver reached its limit of work before it found the best relief. The shape error is at most ") +
-      percent + " % above the smallest possible one. A thicker relief or a simpler model is solved completely."};
+std::vector<std::string> notes_of(const Relief& relief) {
+  std::vector<std::string> notes;
+  const BoundedQpSolution& qp = relief.qp;
+  if (qp.relative_gap > gap_worth_a_note) {
+    notes.push_back("The relief is not quite the best one: the solver reached its limit of work. Its shape error is at most " +
+                    with_digits(100 * qp.relative_gap, 2) +
+                    " % above the smallest possible one. A thicker relief or a simpler model is solved completely.");
+  }
+  if (const int left_out = relief.order_rows_left_out; left_out > 0) {
+    notes.push_back("Parts may lie the wrong way round in depth at " + std::to_string(left_out) +
+                    (left_out == 1 ? " place" : " places") +
+                    ": between the bounds of this base there is no room to keep their order. More thickness or another "
+                    "viewpoint gives them room.");
+  }
+  if (const int beyond = relief.vertices_beyond_base; beyond > 0) {
+    notes.push_back("The model reaches beyond the base: " + std::to_string(beyond) +
+                    (beyond == 1 ? " vertex has" : " vertices have") +
+                    " nothing behind, and may lie at any depth. Make the relief smaller or the base larger.");
+  }
+  return notes;
 }
 
 OperationResult run_relief(const OperationCall& call, const ReliefOptions& options) {
@@ -332,7 +345,7 @@ OperationResult run_relief(const OperationCall& call, const ReliefOptions& optio
   report["seconds_factorise"] = reused ? 0.0 : solver->seconds_factorise();
   report["seconds_write"] = watch.seconds();
   report["repairs"] = loaded->repairs;
-  report["notes"] = notes_of(relief.qp);
+  report["notes"] = notes_of(relief);
   return result;
 }
 

@@ -18,6 +18,7 @@ constexpr int max_corrections = 8;      // multiplier steps on one active set
 constexpr double polish_target = 1e-3;  // of the tolerance
 constexpr double zero_force = 1e-10;    // of the largest force: a multiplier no smaller than minus this counts as zero
 constexpr double tying_force = 1e-9;    // of the largest force: a reaction that ties a part to its bound
+constexpr double max_growth = 1e3;      // of the largest displacement
 constexpr double balance_to_reach = 1e-13;  // of the largest force: what corrections strive for
 
 struct ActiveSet {
@@ -112,6 +113,7 @@ void Polish::solve(double target, Context& context) {
   system_.factorize(springs, context);
   const Eigen::VectorXd& gauge = system_.gauge();
   system_.place_held(u_, m_);
+  double open_before = std::numeric_limits<double>::infinity(), unbalanced_before = open_before;
   for (int correction = 0;; ++correction) {
     left_ = energy_.apply(u_);
     if (gauge.size() > 0) left_ -= gauge_force_ * gauge;
@@ -134,7 +136,12 @@ void Polish::solve(double target, Context& context) {
       size = std::max(size, std::abs(left_[i]));
     }
     if (gauge.size() > 0) open = std::max(open, std::abs(gauge.dot(u_)));
-    if (correction == max_corrections || (open <= 0.1 * target && unbalanced <= balance_to_reach * force_size_)) return;
+    const bool closed = open <= 0.1 * target, balanced = unbalanced <= balance_to_reach * force_size_;
+    // What is left of either is round-off.
+    const bool spent = (closed || open > 0.5 * open_before) && (balanced || unbalanced > 0.5 * unbalanced_before);
+    if (correction == max_corrections || (correction > 0 && spent) || (closed && balanced)) return;
+    open_before = open;
+    unbalanced_before = unbalanced;
     const double c_left = gauge.size() > 0 ? -gauge.dot(u_) : 0;
     const NewtonSystem::Step step = system_.solve(spring_force - left_, b, c_left, 0);
     u_ += step.u;
@@ -218,6 +225,8 @@ ExchangeResult Polish::run(double tolerance, Context& context) {
       break;
     }
     if (!u_.allFinite() || !m_.allFinite()) break;
+    // Constraints that hold leave a direction free in which nothing but round-off acts.
+    if (u_.cwiseAbs().maxCoeff() > max_growth * std::max(point_.u.cwiseAbs().maxCoeff(), rows_.scale())) break;
     const int wrong = exchange(polish_target * tolerance);
     if (wrong == 0) {
       ExchangeResult found = result();

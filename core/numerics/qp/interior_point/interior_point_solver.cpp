@@ -16,9 +16,14 @@ constexpr double boundary_part = 0.9995;
 constexpr double start_slack = 0.05;  // of the distance between the bounds
 constexpr double balance_tolerance = 1e-9;
 constexpr double zero_energy = 1e-18;  // of the stiffness times the square of the lengths
+constexpr double min_energy = 1e-12;   // of the same, where even the start has none
 constexpr int steps_after_small_gap = 6;
+constexpr double stiffer = 0.1;
 constexpr int max_corrections_of_step = 2;
 constexpr double long_step = 0.9;
+
+double square(double x) { return x * x; }
+
 // Slacks and multipliers of one family of rows, g^T u + slope m - s = bound, s, y >= 0.
 struct Family {
   std::vector<RowKey> key;
@@ -35,6 +40,7 @@ class InteriorPoint {
 
  private:
   void begin(const InteriorPointStart& start);
+  double energy_of_nearest() const;
   void residuals();
   void factorize(Context& context);
   void direction();
@@ -70,7 +76,12 @@ InteriorPoint::InteriorPoint(const Energy& energy, NewtonMatrix& matrix, const R
     if (std::isfinite(c.upper[i])) bounds_.key.push_back({Side::upper, i});
   }
   system_.hold(held);
-  for (std::size_t r = 0; r < c.rows.size(); ++r) order_.key.push_back({Side::order, static_cast<int>(r)});
+  // Where all unknowns of a row are held nothing can move it: its force would grow without end.
+  for (std::size_t r = 0; r < c.rows.size(); ++r) {
+    const auto is_held = [&](int i) { return system_.held(i); };
+    if (!std::all_of(c.rows[r].index.begin(), c.rows[r].index.end(), is_held))
+      order_.key.push_back({Side::order, static_cast<int>(r)});
+  }
   begin(start);
 }
 
@@ -82,7 +93,10 @@ void InteriorPoint::begin(const InteriorPointStart& start) {
   m_ = inside ? c.inside_m : start.m;
   system_.place_held(u_, m_);
   bounds_.soft.setZero(static_cast<Eigen::Index>(bounds_.key.size()));
-  order_.soft = order_softness(energy_, rows_);
+  const Eigen::VectorXd softness = order_softness(energy_, rows_);
+  order_.soft.resize(static_cast<Eigen::Index>(order_.key.size()));
+  for (std::size_t a = 0; a < order_.key.size(); ++a)
+    order_.soft[static_cast<Eigen::Index>(a)] = softness[order_.key[a].index];
   // A known multiplier times the slack its row starts with is how far from the end the start is.
   Eigen::VectorXd known = Eigen::VectorXd::Zero(n_),
                   known_order = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(c.rows.size()));
@@ -119,12 +133,34 @@ void InteriorPoint::begin(const InteriorPointStart& start) {
     }
   }
   double mu = products > 0 ? product / products : 0;
-  if (!(mu > 0))
-    mu = std::max(energy_.energy(u_), 1e-12 * energy_.absolute_sum() * rows_.scale() * rows_.scale()) /
+  if (!(mu > 0)) {
+    mu = std::max({energy_.energy(u_), energy_of_nearest(), min_energy * energy_.absolute_sum() * square(rows_.scale())}) /
          std::max(1.0, count());
+  }
   for (Family* family : {&bounds_, &order_}) {
     for (Eigen::Index a = 0; a < family->s.size(); ++a) family->y[a] = std::max(family->y[a], mu / family->s[a]);
   }
+}
+
+// Of the point that is moved onto each violated constraint by itself. Multipliers that start far below what the
+// constraints will need cost tens of short steps; those far above cost one or two.
+double InteriorPoint::energy_of_nearest() const {
+  Eigen::VectorXd moved_u = u_;
+  for (std::size_t a = 0; a < bounds_.key.size(); ++a) {
+    const RowKey key = bounds_.key[a];
+    const double missing = rows_.bound(key) - moved(key, u_, m_);
+    if (missing > 0) moved_u[key.index] += key.side == Side::upper ? -missing : missing;
+  }
+  for (const InequalityRow& row : rows_.constraints().rows) {
+    double value = row.slope * m_[row.group] - row.bound, size = 0;
+    for (std::size_t k = 0; k < row.index.size(); ++k) {
+      value += row.coefficient[k] * moved_u[row.index[k]];
+      size += square(row.coefficient[k]);
+    }
+    if (!(value < 0) || !(size > 0)) continue;
+    for (std::size_t k = 0; k < row.index.size(); ++k) moved_u[row.index[k]] -= value * row.coefficient[k] / size;
+  }
+  return energy_.energy(moved_u);
 }
 
 void InteriorPoint::residuals() {
@@ -153,7 +189,11 @@ void InteriorPoint::factorize(Context& context) {
     (bounds_.key[a].side == Side::upper ? springs.upper : springs.lower)[bounds_.key[a].index] =
         bounds_.y[k] / bounds_.s[k];
   }
-  springs.order = (order_.y.array() / (order_.s.array() + order_.y.array() * order_.soft.array())).matrix();
+  springs.order.setZero(static_cast<Eigen::Index>(rows_.constraints().rows.size()));
+  for (std::size_t a = 0; a < order_.key.size(); ++a) {
+    const auto k = static_cast<Eigen::Index>(a);
+    springs.order[order_.key[a].index] = order_.y[k] / (order_.s[k] + order_.y[k] * order_.soft[k]);
+  }
   system_.factorize(springs, context);
 }
 
@@ -258,6 +298,8 @@ InteriorPointResult InteriorPoint::run(const InteriorPointSettings& settings, Co
     context.progress(result.iterations / (result.iterations + 10.0), "Fitting into the thickness");
     // What a few more steps do not improve is round-off.
     small_gaps = result.relative_gap <= settings.relative_gap && open > 0.5 * open_before ? small_gaps + 1 : 0;
+    // Rows that nearly repeat each other share a force that soft springs move from one to the other only slowly.
+    if (small_gaps > 0) order_.soft *= stiffer;
     open_before = open;
     if (small_gaps > steps_after_small_gap) break;
     if (result.converged || result.iterations >= settings.max_iterations || count() == 0) break;
@@ -273,14 +315,17 @@ InteriorPointResult InteriorPoint::run(const InteriorPointSettings& settings, Co
     double step = std::min(1.0, step_length()), after = 0;
     for (const Family* family : {&bounds_, &order_})
       after += (family->s + step * family->ds).dot(family->y + step * family->dy);
-    const double left = std::clamp(after / gap, 0.0, 1.0), sigma = left * left * left;
+    const double left = std::clamp(after / gap, 0.0, 1.0);
+    // Below the gap that is asked for, smaller products only cost digits while rows still close.
+    const double asked = settings.relative_gap * std::max(energy, no_energy) / std::max(1.0, count());
+    const double wanted = std::max(left * left * left * mu, 0.1 * asked);
     for (Family* family : {&bounds_, &order_}) {
       family->target =
-          (sigma * mu - family->s.array() * family->y.array() - family->ds.array() * family->dy.array()).matrix();
+          (wanted - family->s.array() * family->y.array() - family->ds.array() * family->dy.array()).matrix();
     }
     direction();
     step = std::min(1.0, boundary_part * step_length());
-    step = correct(step, sigma * mu);
+    step = correct(step, wanted);
     if (!(step > 1e-12) || !std::isfinite(step) || !du_.allFinite() || !dm_.allFinite()) break;
     u_ += step * du_;
     m_ += step * dm_;
@@ -298,8 +343,12 @@ InteriorPointResult InteriorPoint::run(const InteriorPointSettings& settings, Co
     (lower ? result.slack_lower : result.slack_upper)[bounds_.key[b].index] = bounds_.s[k];
     (lower ? result.force_lower : result.force_upper)[bounds_.key[b].index] = bounds_.y[k];
   }
-  result.order_slack = order_.s;
-  result.order_force = order_.y;
+  result.order_slack = Eigen::VectorXd::Ones(static_cast<Eigen::Index>(rows_.constraints().rows.size()));
+  result.order_force = Eigen::VectorXd::Zero(result.order_slack.size());
+  for (std::size_t a = 0; a < order_.key.size(); ++a) {
+    result.order_slack[order_.key[a].index] = order_.s[static_cast<Eigen::Index>(a)];
+    result.order_force[order_.key[a].index] = order_.y[static_cast<Eigen::Index>(a)];
+  }
   result.u = std::move(u_);
   result.m = std::move(m_);
   result.gauge_force = gauge_force_;

@@ -2,7 +2,9 @@
 #include "numerics/qp/interior_point/newton_system.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "base/index.h"
 
@@ -10,7 +12,9 @@ namespace formwright::bounded_qp_detail {
 
 namespace {
 constexpr double spring_softness = 1e-3;  // of the unknowns of an order row
-constexpr double proximal_part = 1e-13;   // of the diagonal of Q, in the matrix only: components that touch nothing
+constexpr double proximal_part = 1e-13;   // of the diagonal of Q, in the matrix only: scales that touch nothing
+constexpr double pin_part = 1e-3;         // of the pin's diagonal
+constexpr double no_change = 1e-12;       // of a row's coefficients: their sum, where a shift changes nothing
 }  // namespace
 
 NewtonSystem::NewtonSystem(const Energy& energy, NewtonMatrix& matrix, const Rows& rows)
@@ -38,11 +42,48 @@ void NewtonSystem::place_held(Eigen::VectorXd& u, const Eigen::VectorXd& m) cons
   }
 }
 
+// Where nothing pushes, the constant of a component is anyone's: round-off would move it far, and far from zero Q u loses
+// its digits. A spring on one unknown, in the matrix only, lets it move no farther than the gauge asks. Order rows that
+// see differences alone join components to sets with one constant.
+Eigen::VectorXd NewtonSystem::pins_of_loose_components(const Springs& springs) const {
+  const int components = energy_.component_count();
+  std::vector<int> parent(index(components));
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root = [&](int k) {
+    while (parent[index(k)] != k) k = parent[index(k)] = parent[index(parent[index(k)])];
+    return k;
+  };
+  std::vector<char> touched(index(components), 0);
+  for (int i = 0; i < n_; ++i) {
+    if (held(i) || springs.lower[i] > 0 || springs.upper[i] > 0) touched[index(energy_.component(i))] = 1;
+  }
+  const std::vector<InequalityRow>& order = rows_.constraints().rows;
+  for (std::size_t r = 0; r < order.size(); ++r) {
+    if (!(springs.order[static_cast<Eigen::Index>(r)] > 0) || order[r].index.empty()) continue;
+    const int first = root(energy_.component(order[r].index.front()));
+    double sum = 0, size = 0;
+    bool touches = touched[index(first)] != 0;
+    for (std::size_t k = 0; k < order[r].index.size(); ++k) {
+      const int other = root(energy_.component(order[r].index[k]));
+      touches = touches || touched[index(other)];
+      parent[index(other)] = first;
+      sum += order[r].coefficient[k];
+      size += std::abs(order[r].coefficient[k]);
+    }
+    touched[index(first)] = touches || std::abs(sum) > no_change * size;
+  }
+  Eigen::VectorXd pins = Eigen::VectorXd::Zero(n_);
+  for (int k = 0; k < components; ++k) {
+    if (root(k) == k && !touched[index(k)]) pins[energy_.pin(k)] = pin_part * energy_.diagonal(energy_.pin(k));
+  }
+  return pins;
+}
+
 void NewtonSystem::factorize(const Springs& springs, Context& context) {
   springs_ = springs;
   const BoundedQpConstraints& c = rows_.constraints();
   const Eigen::Index borders = groups_ + (gauge_.size() > 0 ? 1 : 0);
-  Eigen::VectorXd diagonal = springs.lower + springs.upper;
+  Eigen::VectorXd diagonal = springs.lower + springs.upper + pins_of_loose_components(springs);
   border_.setZero(n_, borders);
   Eigen::MatrixXd E = Eigen::MatrixXd::Zero(borders, borders);
   if (!held_bounds_.empty()) {

@@ -48,6 +48,7 @@ class NewtonSystem {
   Step solve(const Eigen::VectorXd& a, const Eigen::VectorXd& b, double c, int refinements) const;
 
  private:
+  Eigen::VectorXd pins_of_loose_components(const Springs& springs) const;
   Step solve_once(const Eigen::VectorXd& a, const Eigen::VectorXd& b, double c) const;
   void subtract_product(const Step& step, Eigen::VectorXd& a, Eigen::VectorXd& b, double& c) const;
 

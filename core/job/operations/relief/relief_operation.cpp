@@ -218,9 +218,10 @@ std::vector<std::string> notes_of(const Relief& relief) {
   std::vector<std::string> notes;
   const BoundedQpSolution& qp = relief.qp;
   if (qp.relative_gap > gap_worth_a_note) {
-    notes.push_back("The relief is not quite the best one: the solver reached its limit of work. Its shape error is at most " +
-                    with_digits(100 * qp.relative_gap, 2) +
-                    " % above the smallest possible one. A thicker relief or a simpler model is solved completely.");
+    notes.push_back(
+        "The relief is not quite the best one: the solver reached its limit of work. Its shape error is at most " +
+        with_digits(100 * qp.relative_gap, 2) +
+        " % above the smallest possible one. A thicker relief or a simpler model is solved completely.");
   }
   if (const int left_out = relief.order_rows_left_out; left_out > 0) {
     notes.push_back("Parts may lie the wrong way round in depth at " + std::to_string(left_out) +

@@ -13,12 +13,13 @@ namespace formwright::bounded_qp_detail {
 
 namespace {
 constexpr double boundary_part = 0.9995;
-constexpr double start_slack = 0.05;  // of the distance between the bounds
+constexpr double start_slack = 0.01;  // of the distance between the bounds
 constexpr double balance_tolerance = 1e-9;
 constexpr double zero_energy = 1e-18;  // of the stiffness times the square of the lengths
 constexpr double min_energy = 1e-12;   // of the same, where even the start has none
 constexpr int steps_after_small_gap = 6;
-constexpr double stiffer = 0.1;
+constexpr double stiffer = 0.1;            // springs of order rows, a step, while rows do not close
+constexpr double first_stiffening = 0.01;  // of what order_softness says: every step measures anew what is left
 constexpr int max_corrections_of_step = 2;
 constexpr double long_step = 0.9;
 
@@ -96,7 +97,7 @@ void InteriorPoint::begin(const InteriorPointStart& start) {
   const Eigen::VectorXd softness = order_softness(energy_, rows_);
   order_.soft.resize(static_cast<Eigen::Index>(order_.key.size()));
   for (std::size_t a = 0; a < order_.key.size(); ++a)
-    order_.soft[static_cast<Eigen::Index>(a)] = softness[order_.key[a].index];
+    order_.soft[static_cast<Eigen::Index>(a)] = first_stiffening * softness[order_.key[a].index];
   // A known multiplier times the slack its row starts with is how far from the end the start is.
   Eigen::VectorXd known = Eigen::VectorXd::Zero(n_),
                   known_order = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(c.rows.size()));
@@ -114,6 +115,9 @@ void InteriorPoint::begin(const InteriorPointStart& start) {
   };
   double widths = 0;
   for (int i = 0; i < n_; ++i) widths += width_of(i) / n_;
+  // Products of the size that the energy's forces and the distances between the bounds have: multipliers that start far
+  // below what will be needed cost tens of short steps.
+  const double force_product = energy_.apply(u_).lpNorm<1>() * widths / std::max(1.0, count());
   double product = 0;
   int products = 0;
   for (Family* family : {&bounds_, &order_}) {
@@ -134,8 +138,10 @@ void InteriorPoint::begin(const InteriorPointStart& start) {
   }
   double mu = products > 0 ? product / products : 0;
   if (!(mu > 0)) {
-    mu = std::max({energy_.energy(u_), energy_of_nearest(), min_energy * energy_.absolute_sum() * square(rows_.scale())}) /
+    mu = std::max(
+             {energy_.energy(u_), energy_of_nearest(), min_energy * energy_.absolute_sum() * square(rows_.scale())}) /
          std::max(1.0, count());
+    mu = std::max(mu, force_product);
   }
   for (Family* family : {&bounds_, &order_}) {
     for (Eigen::Index a = 0; a < family->s.size(); ++a) family->y[a] = std::max(family->y[a], mu / family->s[a]);

@@ -42,9 +42,9 @@ void NewtonSystem::place_held(Eigen::VectorXd& u, const Eigen::VectorXd& m) cons
   }
 }
 
-// Where nothing pushes, the constant of a component is anyone's: round-off would move it far, and far from zero Q u loses
-// its digits. A spring on one unknown, in the matrix only, lets it move no farther than the gauge asks. Order rows that
-// see differences alone join components to sets with one constant.
+// Where nothing pushes, the constant of a component is anyone's: round-off would move it far, and far from zero Q u
+// loses its digits. A spring on one unknown, in the matrix only, lets it move no farther than the gauge asks. Order
+// rows that see differences alone join components to sets with one constant.
 Eigen::VectorXd NewtonSystem::pins_of_loose_components(const Springs& springs) const {
   const int components = energy_.component_count();
   std::vector<int> parent(index(components));

@@ -43,6 +43,13 @@ BoundedQpConstraints constraints_of(const ViewFrame& frame, const DepthBounds& b
   return c;
 }
 
+/// Linear compression as a point of the constraints, moved to their gauge.
+void set_inside(const ViewFrame& frame, const Eigen::VectorXd& compressed, BoundedQpConstraints& c) {
+  const double mean = compressed.mean(), m = -mean / (1 + frame.kappa * mean);
+  c.inside_u = (compressed.array() + (1 + frame.kappa * compressed.array()) * m).matrix();
+  c.inside_m = Eigen::VectorXd::Constant(1, m);
+}
+
 /// The scale of each group, eq. (3.11), as m with mu = 1 + kappa m. Where the bounds leave it free, the relief is put
 /// back against its base: the smallest m, as the term alpha |mu|^2 of eq. (3.14) would choose.
 Eigen::VectorXd scales(const BoundedQpConstraints& c, const BoundedQpSolution& qp) {
@@ -210,6 +217,8 @@ Relief ReliefSolver::solve(const ReliefOptions& options, const BaseSurface& base
                          [&](const InequalityRow& row) { return can_hold(row, bounds, constraints); });
 
   Relief relief;
+  // On a curved base linear compression need not keep the order.
+  if (lent) set_inside(frame_, linear_compression(frame_, bounds), constraints);
   BoundedQpOptions qp_options;
   qp_options.method = options.method;
   qp_options.violation_tolerance = 1e-9 * (options.thickness_mm + options.carve_depth_mm) / options.width_mm;

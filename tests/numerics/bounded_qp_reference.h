@@ -217,6 +217,7 @@ struct RandomProblemSettings {
   double free_bounds = 0.2;  // share of bounds that are infinite
   double equal_bounds = 0;   // share of unknowns with lower = upper
   double tightness = 0.5;    // 0: the feasible point is wide of its bounds
+  int near_copies = 0;       // of every row, with coefficients and bound changed by 1e-10 to 1e-4
 };
 
 inline RandomProblem random_problem(std::uint64_t seed, const RandomProblemSettings& settings) {
@@ -294,6 +295,20 @@ inline RandomProblem random_problem(std::uint64_t seed, const RandomProblemSetti
     for (std::size_t k = 0; k < row.index.size(); ++k) value += row.coefficient[k] * p.feasible_u[row.index[k]];
     row.bound = value - random.between(0, 0.3);
     c.rows.push_back(row);
+  }
+  for (int r = 0; r < settings.rows; ++r) {
+    for (int copy = 0; copy < settings.near_copies; ++copy) {
+      InequalityRow row = c.rows[static_cast<std::size_t>(r)];
+      const double change = std::pow(10, random.between(-10, -4));
+      double shift = 0;
+      for (std::size_t k = 0; k < row.index.size(); ++k) {
+        const double more = change * random.between(-1, 1);
+        row.coefficient[k] += more;
+        shift += more * p.feasible_u[row.index[k]];
+      }
+      row.bound += shift - change * random.unit();  // the feasible point stays so
+      c.rows.push_back(row);
+    }
   }
   return p;
 }

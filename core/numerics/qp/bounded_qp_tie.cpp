@@ -9,7 +9,7 @@
 
 #include "base/error.h"
 #include "base/index.h"
-#include "numerics/qp/exchange_pool_qp.h"
+#include "numerics/qp/exchange/exchange_pool_qp.h"
 
 namespace formwright::bounded_qp_detail {
 
@@ -129,7 +129,8 @@ int break_ties(const Energy& energy, const Rows& rows, std::span<const RowKey> p
     active.resize(pool.size(), 1);
     PoolQp qp;
     qp.set_problem(gram, problem, false);
-    const PoolSolution solution = qp.solve(active, Eigen::VectorXd(), 0.1 * tolerance, context);
+    const PoolSolution solution =
+        qp.solve(active, Eigen::VectorXd(), 0.1 * tolerance, std::numeric_limits<double>::infinity(), context);
     if (solution.contradictory) {
       throw Error(
           ErrorCode::could_not_solve, "constraints",

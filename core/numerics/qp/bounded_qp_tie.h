@@ -5,8 +5,8 @@
 #include <span>
 
 #include "base/context.h"
-#include "numerics/qp/bounded_qp_energy.h"
-#include "numerics/qp/bounded_qp_rows.h"
+#include "numerics/qp/problem/bounded_qp_energy.h"
+#include "numerics/qp/problem/bounded_qp_rows.h"
 
 namespace formwright::bounded_qp_detail {
 

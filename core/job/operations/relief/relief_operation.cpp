@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "base/format.h"
 #include "geometry/mesh/adjacency.h"
 #include "formats/mesh_io.h"
 #include "formats/png/png16.h"
@@ -18,8 +19,9 @@ namespace {
 
 // Of the relief's thickness: how far the solid's larger triangles may leave the height field.
 constexpr double solid_tolerance = 1e-3;
-constexpr double nodes_of_picture = 256;  // across the base where it is only looked at
-constexpr double unbounded_mm = 1e30;     // stands for "no bound" in relief.ply, where infinity has no safe spelling
+constexpr double nodes_of_picture = 256;   // across the base where it is only looked at
+constexpr double gap_worth_a_note = 1e-6;  // of the shape error: below, no eye and no gauge tells the difference
+constexpr double unbounded_mm = 1e30;      // stands for "no bound" in relief.ply, where infinity has no safe spelling
 
 std::vector<OutputInfo> relief_outputs() {
   return {{"relief.ply", "application/x-ply", "PLY",
@@ -71,6 +73,8 @@ std::vector<ReportField> relief_report_fields() {
        "Number of vertices that have no base behind them and are free in depth."},
       {"kkt_residual", "KKT residual", "",
        "Relative error of the optimality conditions (Karush-Kuhn-Tucker) at the solution; practically 0."},
+      {"relative_gap", "Distance from the best", "",
+       "The smallest possible shape error is at most this share below that of the relief; 0 for the best relief itself."},
       {"rounds", "Iterations", "", "Number of iterations of the numerical method."},
       {"balanced_steps", "Steps for broad forms", "",
        "Number of steps that the appearance \"balanced\" took after the numerical method; 0 for \"detail\"."},
@@ -103,7 +107,8 @@ std::vector<ReportField> relief_report_fields() {
        "Time for the matrix factorisation, which a change of thickness does not need again."},
       {"seconds_write", "Writing", "s", "Time for writing the output files."},
       {"peak_memory_mb", "Peak memory", "MB", "Largest amount of memory that the process used."},
-      {"repairs", "Repairs", "", "What was found wrong in the model and repaired, as sentences."}};
+      {"repairs", "Repairs", "", "What was found wrong in the model and repaired, as sentences."},
+      {"notes", "Notes", "", "What to know about the result, as sentences."}};
 }
 
 Json vector_json(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
@@ -181,6 +186,7 @@ void report_relief(Json& report, const LoadedModel& loaded, const ReliefSolver& 
   report["order_rows_left_out"] = relief.order_rows_left_out;
   report["vertices_beyond_base"] = relief.vertices_beyond_base;
   report["kkt_residual"] = relief.qp.kkt_residual;
+  report["relative_gap"] = relief.qp.relative_gap;
   report["rounds"] = relief.qp.rounds;
   report["balanced_steps"] = relief.balanced_steps;
   report["active_constraints"] = relief.qp.active_constraints;
@@ -205,6 +211,30 @@ void report_pictures(Json& report, const ReliefSolver& solver, const Relief& rel
   report["picture_similarity_linear"] = plain.similarity;
   report["false_edges_percent"] = ours.false_edges_percent;
   report["false_edges_linear_percent"] = plain.false_edges_percent;
+}
+
+/// What the maker should know about how the relief was found.
+std::vector<std::string> notes_of(const Relief& relief) {
+  std::vector<std::string> notes;
+  const BoundedQpSolution& qp = relief.qp;
+  if (qp.relative_gap > gap_worth_a_note) {
+    notes.push_back(
+        "The relief is not quite the best one: the solver reached its limit of work. Its shape error is at most " +
+        with_digits(100 * qp.relative_gap, 2) +
+        " % above the smallest possible one. A thicker relief or a simpler model is solved completely.");
+  }
+  if (const int left_out = relief.order_rows_left_out; left_out > 0) {
+    notes.push_back("Parts may lie the wrong way round in depth at " + std::to_string(left_out) +
+                    (left_out == 1 ? " place" : " places") +
+                    ": between the bounds of this base there is no room to keep their order. More thickness or another "
+                    "viewpoint gives them room.");
+  }
+  if (const int beyond = relief.vertices_beyond_base; beyond > 0) {
+    notes.push_back("The model reaches beyond the base: " + std::to_string(beyond) +
+                    (beyond == 1 ? " vertex has" : " vertices have") +
+                    " nothing behind, and may lie at any depth. Make the relief smaller or the base larger.");
+  }
+  return notes;
 }
 
 OperationResult run_relief(const OperationCall& call, const ReliefOptions& options) {
@@ -316,6 +346,7 @@ OperationResult run_relief(const OperationCall& call, const ReliefOptions& optio
   report["seconds_factorise"] = reused ? 0.0 : solver->seconds_factorise();
   report["seconds_write"] = watch.seconds();
   report["repairs"] = loaded->repairs;
+  report["notes"] = notes_of(relief);
   return result;
 }
 

@@ -3,6 +3,8 @@
 import { useSignal } from '@preact/signals';
 import { Button, formatDuration, Icon, Note, useLasting } from '../../ui';
 import { narrow } from '../../shared/panels/narrow';
+import { NoteList } from '../../shared/panels/note_list';
+import { notesOf } from '../../shared/session/report_notes';
 import { readyWorker } from '../../shared/session/services';
 import { problemNote, repairsNote } from '../../shared/panels/room_notes';
 import type { ReliefSession } from './relief_session';
@@ -67,7 +69,14 @@ export function Notes({ session, onChooseFile, onWorkerHelp }: NotesProps) {
       </div>
     );
   }
-  return null;
+  return (
+    <NoteList
+      notes={notesOf(session.shown.value?.report ?? {}, 'notes')}
+      title="Before you make it"
+      urgent
+      onFix={({ fix }) => fix && session.setParameters(fix.parameters, fix.label)}
+    />
+  );
 }
 
 interface NotesProps {

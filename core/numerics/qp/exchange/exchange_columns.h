@@ -32,6 +32,8 @@ class ExchangeColumns {
   /// Y^T z.
   Eigen::VectorXd project(const Eigen::VectorXd& z) const;
 
+  /// Multiplications so far, about: the same number on every machine.
+  double work() const { return work_; }
   double memory_mb() const;
 
  private:
@@ -42,6 +44,7 @@ class ExchangeColumns {
   int n_ = 0, count_ = 0;
   std::vector<Panel> panels_;
   Eigen::MatrixXd gram_;
+  double work_ = 0;
 };
 
 }  // namespace formwright::bounded_qp_detail

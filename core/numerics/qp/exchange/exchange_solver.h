@@ -3,24 +3,23 @@
 // Exchange: solve for a small pool of constraints, add those that the result violates most, repeat.
 // A dual active-set method in the spirit of Goldfarb and Idnani 1983 and of Remez's exchange, with one factorisation.
 #include <Eigen/Core>
+#include <limits>
 #include <span>
 #include <unordered_map>
 #include <vector>
 
 #include "base/context.h"
-#include "numerics/qp/bounded_qp_energy.h"
-#include "numerics/qp/bounded_qp_rows.h"
-#include "numerics/qp/exchange_columns.h"
-#include "numerics/qp/exchange_pool_qp.h"
+#include "numerics/qp/problem/bounded_qp_energy.h"
+#include "numerics/qp/problem/bounded_qp_rows.h"
+#include "numerics/qp/exchange/exchange_columns.h"
+#include "numerics/qp/exchange/exchange_pool_qp.h"
 
 namespace formwright::bounded_qp_detail {
 
 struct ExchangeSettings {
-  double violation_tolerance = 0;  // to accept
-  int max_rounds = 200;
-  int max_active = 1 << 30;   // more rows in contact at once: stop, with `stopped`
-  bool may_stop = false;      // after max_rounds: stop, with `stopped`, instead of an error
-  std::vector<RowKey> first;  // rows to begin with, beside those of the call before
+  double violation_tolerance = 0;                             // to accept
+  int max_rounds = 200;                                       // then: stop, with `stopped`
+  double max_work = std::numeric_limits<double>::infinity();  // multiplications, about: stop, with `stopped`
 };
 
 struct ExchangeResult {
@@ -31,8 +30,8 @@ struct ExchangeResult {
   Eigen::VectorXd force;        // n: all multipliers times their rows, the gauge's included; Q u off the base
   double violation_max = 0;
   int rounds = 0, columns = 0, pivots = 0;
-  bool stopped = false;         // violations are left
-  std::vector<RowKey> blocked;  // violated order rows on the base, which the exchange must not fight
+  double work = 0;       // multiplications, about
+  bool stopped = false;  // violations are left, or the work ran out
   std::vector<BoundedQpRound> history;
   BoundedQpSeconds seconds;
 };
@@ -41,7 +40,7 @@ class ExchangeSolver {
  public:
   explicit ExchangeSolver(Energy& energy) : energy_(energy) {}
 
-  /// `base`: bounds held from the outset, at most one for an unknown; those unknowns leave the factorisation.
+  /// `base`: unknowns whose bounds are equal; they leave the factorisation.
   /// Starts from the active set of the call before if the base is the same. Throws Error: could_not_solve.
   ExchangeResult solve(const Rows& rows, const std::vector<RowKey>& base, const ExchangeSettings& settings,
                        Context& context);
@@ -56,7 +55,6 @@ class ExchangeSolver {
   void start(const Rows& rows, const std::vector<RowKey>& base, Context& context);
   void add_to_pool(const Rows& rows, std::span<const RowKey> keys, Context& context);
   int& column_of(const Rows& rows, RowKey key);
-  bool on_guess(const Rows& rows, RowKey key) const;
   int gauge_rows() const { return gauge_column_ >= 0 ? 1 : 0; }
   PoolProblem pool_problem(const Rows& rows) const;
   Eigen::VectorXd by_column(const PoolProblem& problem, const Eigen::VectorXd& y) const;
@@ -81,7 +79,6 @@ class ExchangeSolver {
   std::vector<char> active_;          // pool rows
   Eigen::VectorXd drivers_;           // free constants, then m
   std::vector<int> constant_driver_;  // component -> driver, or -1
-  std::vector<char> guessed_;         // unknowns of base rows that are no equalities; empty without a base
   std::vector<RowKey> base_;
   Eigen::VectorXd base_offset_;  // n, or empty: u with all drivers at zero
   Eigen::MatrixXd base_slope_;   // n x groups, or empty: du/dm

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "numerics/qp/bounded_qp.h"
-#include "numerics/qp/bounded_qp_energy.h"
+#include "numerics/qp/problem/bounded_qp_problem.h"
+#include "numerics/qp/problem/bounded_qp_energy.h"
 
 namespace formwright::bounded_qp_detail {
 

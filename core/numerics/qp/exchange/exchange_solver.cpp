@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "numerics/qp/exchange_solver.h"
+#include "numerics/qp/exchange/exchange_solver.h"
 
 #include <algorithm>
 #include <bit>
@@ -49,11 +49,7 @@ void ExchangeSolver::start(const Rows& rows, const std::vector<RowKey>& base, Co
   std::vector<char> flags;
   if (!base.empty()) {
     flags.assign(index(n), 0);
-    guessed_.assign(index(n), 0);
-    for (const RowKey key : base) {
-      flags[index(key.index)] = 1;
-      guessed_[index(key.index)] = rows.equality(key) ? 0 : 1;
-    }
+    for (const RowKey key : base) flags[index(key.index)] = 1;
   }
   energy_.factorize_pinned(flags, context);
   constant_driver_.assign(index(energy_.component_count()), -1);
@@ -72,9 +68,8 @@ void ExchangeSolver::start(const Rows& rows, const std::vector<RowKey>& base, Co
   if (!base.empty()) {
     Eigen::MatrixXd held = Eigen::MatrixXd::Zero(n, groups + 1);
     for (const RowKey key : base) {
-      const double sign = key.side == Side::upper ? -1 : 1;
-      held(key.index, groups) = sign * rows.bound(key);
-      held(key.index, rows.group(key)) = -sign * rows.slope(key);
+      held(key.index, groups) = rows.bound(key);
+      held(key.index, rows.group(key)) = -rows.slope(key);
     }
     for (Eigen::Index c = 0; c <= groups; ++c) {
       Eigen::VectorXd force = -energy_.apply(held.col(c));
@@ -261,13 +256,6 @@ double ExchangeSolver::force_residual(const Rows& rows, const PoolSolution& pool
   return worst / std::max(force.cwiseAbs().maxCoeff(), std::numeric_limits<double>::min());
 }
 
-// Whether an order row moves with unknowns that are on their bound by guess, not by equality.
-bool ExchangeSolver::on_guess(const Rows& rows, RowKey key) const {
-  if (key.side != Side::order || base_.empty()) return false;
-  const auto& unknowns = rows.constraints().rows[index(key.index)].index;
-  return std::any_of(unknowns.begin(), unknowns.end(), [&](int i) { return guessed_[index(i)] != 0; });
-}
-
 // One step of iterative refinement of the whole KKT system on the active set: the factor of Q is exact to round-off
 // times its condition number, which for a fourth-order energy on a poor mesh is not enough.
 void ExchangeSolver::refine(const Rows& rows, const PoolProblem& problem, const PoolQp& qp, PoolSolution& pool,
@@ -313,12 +301,8 @@ ExchangeResult ExchangeSolver::run(const Rows& rows, const std::vector<RowKey>& 
                                    Context& context) {
   ExchangeResult result;
   Stopwatch watch;
+  const double work_before = columns_.work();
   start(rows, base, context);
-  {
-    std::vector<RowKey> first = settings.first;
-    std::erase_if(first, [&](RowKey key) { return std::find(pool_.begin(), pool_.end(), key) != pool_.end(); });
-    add_to_pool(rows, first, context);
-  }
   result.seconds.factorise = watch.lap();
   const double target = target_violation * settings.violation_tolerance;
   const int groups = rows.groups();
@@ -337,7 +321,9 @@ ExchangeResult ExchangeSolver::run(const Rows& rows, const std::vector<RowKey>& 
       start_active.insert(start_active.end(), active_.begin(), active_.end());
       qp.set_problem(columns_.gram(), problem, grown);
       grown = true;
-      pool = qp.solve(start_active, drivers_, target, context);
+      const double columns_work = columns_.work() - work_before;
+      pool = qp.solve(start_active, drivers_, target, settings.max_work - columns_work, context);
+      result.work = columns_work + qp.work();
       if (pool.contradictory) {
         throw Error(
             ErrorCode::could_not_solve, "constraints",
@@ -351,18 +337,16 @@ ExchangeResult ExchangeSolver::run(const Rows& rows, const std::vector<RowKey>& 
       add_drivers(pool.w, result.u);
       if (base_offset_.size() > 0) result.u += base_offset_;
     }
+    if (!at_rest && pool.stopped) {
+      result.stopped = true;
+      break;
+    }
     std::vector<RowKey> keys;
     for (int pass = 0;; ++pass) {
       result.m = at_rest ? drivers_.tail(groups) : pool.w.tail(groups);
       rows.evaluate(result.u, result.m, violations);
       keys = rows.worth_adding(violations, target);
       std::erase_if(keys, [&](RowKey key) { return std::find(pool_.begin(), pool_.end(), key) != pool_.end(); });
-      result.blocked.clear();
-      std::erase_if(keys, [&](RowKey key) {
-        if (!on_guess(rows, key)) return false;
-        result.blocked.push_back(key);
-        return true;
-      });
       if (at_rest || pass == refinements) break;
       // Round-off matters once nothing else is left to improve.
       double held = 0, left = 0;
@@ -379,11 +363,8 @@ ExchangeResult ExchangeSolver::run(const Rows& rows, const std::vector<RowKey>& 
     result.seconds.sweeps += watch.lap();
     result.history.push_back({violations.max, static_cast<int>(pool_.size()),
                               static_cast<int>(std::count(active_.begin(), active_.end(), 1)), pool.pivots});
-    if (keys.empty()) {
-      result.stopped = !result.blocked.empty();
-      break;
-    }
-    if (result.rounds >= settings.max_rounds || result.history.back().active > settings.max_active) {
+    if (keys.empty()) break;
+    if (result.rounds >= settings.max_rounds) {
       result.stopped = true;
       break;
     }
@@ -392,11 +373,6 @@ ExchangeResult ExchangeSolver::run(const Rows& rows, const std::vector<RowKey>& 
     add_to_pool(rows, keys, context);
     result.seconds.columns += watch.lap();
     context.progress(static_cast<double>(result.rounds) / (result.rounds + 5), "Finding contacts");
-  }
-  if (result.stopped && !settings.may_stop && violations.max > settings.violation_tolerance) {
-    throw Error(ErrorCode::could_not_solve, "max_rounds",
-                "The relief did not converge in " + std::to_string(settings.max_rounds) +
-                    " iterations: raise the thickness, or repair the model.");
   }
   result.violation_max = violations.max;
   result.columns = columns_.count();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "numerics/qp/exchange_pool_qp.h"
+#include "numerics/qp/exchange/exchange_pool_qp.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -26,6 +26,7 @@ constexpr double cancellation_to_refine = 1e5;
 constexpr int proximal_rounds = 60;
 constexpr double contradiction = 1e-9;  // of the size of the rows' terms
 constexpr int block_rounds_without_gain = 4;
+constexpr double slack_work = 5;  // times the seconds of a multiplication in a product of matrices
 }  // namespace
 
 PoolQp::PoolQp()
@@ -115,6 +116,7 @@ double PoolQp::noise(const Eigen::VectorXd& s) const {
 Eigen::VectorXd PoolQp::slack() const {
   Eigen::VectorXd by_column = Eigen::VectorXd::Zero(gram_.rows());
   for (int a = 0; a < p_.rows(); ++a) by_column[p_.column[index(a)]] += p_.sign[index(a)] * y_[a];
+  work_ += slack_work * static_cast<double>(gram_.size());
   const Eigen::VectorXd response = gram_ * by_column;
   Eigen::VectorXd s = p_.B * w_ - p_.d;
   for (int a = 0; a < p_.rows(); ++a) s[a] += p_.sign[index(a)] * response[p_.column[index(a)]];
@@ -126,6 +128,7 @@ bool PoolQp::block_pivoting(double tolerance, Context& context) {
   std::vector<char> active = active_;
   for (;;) {
     context.check_cancelled();
+    if (work() > max_work_) return true;
     solve_active(active);
     const Eigen::VectorXd s = slack();
     const double allowed = std::max(tolerance, noise(s));
@@ -167,6 +170,7 @@ void PoolQp::lawson_hanson(double tolerance, Context& context) {
   for (;;) {
     for (;;) {
       context.check_cancelled();
+      if (work() > max_work_) return;
       solve_active(active);
       double step = 1;
       for (int a = 0; a < k; ++a) {
@@ -201,13 +205,15 @@ void PoolQp::lawson_hanson(double tolerance, Context& context) {
   }
 }
 
-PoolSolution PoolQp::solve(const std::vector<char>& start, const Eigen::VectorXd& w, double tolerance,
+PoolSolution PoolQp::solve(const std::vector<char>& start, const Eigen::VectorXd& w, double tolerance, double max_work,
                            Context& context) {
+  max_work_ = max_work;
   const int k = p_.rows();
   active_ = start;
   for (int a = 0; a < k; ++a) {
     if (p_.equality[index(a)]) active_[index(a)] = 1;
   }
+  y_.setZero(k);
   centre_y_.setZero(k);
   centre_w_ = w;
   w_ = w;
@@ -216,6 +222,8 @@ PoolSolution PoolQp::solve(const std::vector<char>& start, const Eigen::VectorXd
   int stalled = 0;
   for (int round = 0; round < proximal_rounds; ++round) {
     if (!block_pivoting(tolerance, context)) lawson_hanson(tolerance, context);
+    result.stopped = work() > max_work_;
+    if (result.stopped) break;
     result.residual = 0;
     for (int a = 0; a < k; ++a) {
       if (!active_[index(a)]) continue;

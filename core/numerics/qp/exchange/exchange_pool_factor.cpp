@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "numerics/qp/exchange_pool_factor.h"
+#include "numerics/qp/exchange/exchange_pool_factor.h"
 
 #include <algorithm>
 #include <utility>
@@ -16,6 +16,7 @@ constexpr int border_part = 8;  // or up to this part of L
 // Dropping a row that others nearly repeat through the border cancels digits that L without it keeps: round-off in y
 // grows by (S'^-1)_aa S'_aa. A step of refinement gives back about as many digits as are left.
 constexpr double max_cancellation = 1e10;
+constexpr double matrix_by_vector = 5;  // times the seconds of a multiplication in a product of matrices
 }  // namespace
 
 PoolFactor::PoolFactor(Gram gram, const Eigen::VectorXd& row_diagonal, const Eigen::MatrixXd& B,
@@ -83,6 +84,8 @@ bool PoolFactor::grow(int from) {
     V_.conservativeResize(capacity, B_.cols());
   }
   if (fresh == 0) return true;
+  const auto old = static_cast<double>(from), more = static_cast<double>(fresh);
+  work_ += more * (0.5 * old * old + 0.5 * old * more + more * more / 6);
   for (int b = 0; b < size(); ++b) {
     const int first = std::max(b, from);
     gram_(order_[index(b)], std::span(order_).subspan(index(first)), &L_(first, b));
@@ -138,6 +141,8 @@ bool PoolFactor::update_border(const std::vector<char>& active, int old_size) {
     U_.block(0, kept, k, columns - kept).setZero();
     for (Eigen::Index c = kept; c < columns; ++c) U_(dropped_[static_cast<std::size_t>(c)], c) = 1;
     auto part = U_.block(first, kept, k - first, columns - kept);
+    work_ +=
+        0.5 * static_cast<double>(k - first) * static_cast<double>(k - first) * static_cast<double>(columns - kept);
     L_.block(first, first, k - first, k - first).triangularView<Eigen::Lower>().solveInPlace(part);
   }
   cancellation_ = 1;
@@ -151,6 +156,7 @@ bool PoolFactor::update_border(const std::vector<char>& active, int old_size) {
 void PoolFactor::factor_border() {
   const Eigen::Index k = size(), d = B_.cols(), q = static_cast<Eigen::Index>(dropped_.size());
   Eigen::MatrixXd T(d + q, d + q);
+  work_ += static_cast<double>(k) * static_cast<double>((d + q) * (d + q));
   const auto V = V_.topRows(k);
   T.topLeftCorner(d, d) = P_;
   if (k > 0) T.topLeftCorner(d, d).noalias() += V.transpose() * V;
@@ -166,6 +172,7 @@ void PoolFactor::solve(const Eigen::VectorXd& f, const Eigen::VectorXd& balance,
                        Eigen::VectorXd& w) const {
   const Eigen::Index k = size(), d = B_.cols(), q = static_cast<Eigen::Index>(dropped_.size());
   Eigen::VectorXd x(k), z(d + q);
+  work_ += matrix_by_vector * static_cast<double>(k * (k + 2 * (d + q)));
   for (Eigen::Index a = 0; a < k; ++a) x[a] = f[order_[static_cast<std::size_t>(a)]];
   for (const int p : dropped_) x[p] = 0;
   const auto L = L_.topLeftCorner(k, k).triangularView<Eigen::Lower>();

@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 // Interior point for many contacts: Mehrotra's predictor and corrector (Mehrotra 1992; Nocedal and Wright 2006,
-// Alg. 16.4) on Q + diagonal, which keeps the pattern of Q and so its symbolic factorisation.
+// Alg. 16.4) on all bounds and all order rows at once, which lie inside the sparse factorisation of NewtonMatrix.
 #include <Eigen/Core>
-#include <span>
 #include <vector>
 
 #include "base/context.h"
-#include "numerics/qp/bounded_qp_energy.h"
-#include "numerics/qp/bounded_qp_rows.h"
+#include "numerics/qp/problem/bounded_qp_energy.h"
+#include "numerics/qp/problem/bounded_qp_rows.h"
+#include "numerics/qp/interior_point/newton_matrix.h"
 
 namespace formwright::bounded_qp_detail {
 
 struct InteriorPointSettings {
-  double relative_gap = 1e-8;  // sum of slack times multiplier, of the energy: when to stop
+  double relative_gap = 1e-10;  // sum of slack times multiplier, of the energy: when to stop
+  double violation = 1e-10;     // by how much slacks may miss their rows then
   int max_iterations = 100;
 };
 
@@ -27,17 +28,16 @@ struct InteriorPointStart {
 struct InteriorPointResult {
   Eigen::VectorXd u, m;
   Eigen::VectorXd slack_lower, slack_upper, force_lower, force_upper;  // n; 1 and 0 where there is no bound
-  std::vector<int> order;                                              // the order rows taken into account
-  Eigen::VectorXd order_slack, order_force;
+  Eigen::VectorXd order_slack, order_force;                            // of every order row
   double gauge_force = 0;
-  double relative_gap = 0;
+  double relative_gap = 0;  // an upper limit of (energy - smallest energy) / energy, once nothing is violated
+  double violation = 0;     // by how much slacks miss their rows
   int iterations = 0;
   bool converged = false;
 };
 
-/// Bounds, the gauge and the listed order rows; other order rows are left out. Leaves the energy factored with the last
-/// diagonal. Throws Error: could_not_solve, cancelled.
-InteriorPointResult solve_interior_point(Energy& energy, const Rows& rows, std::span<const int> order,
+/// Throws Error: cancelled, out_of_memory.
+InteriorPointResult solve_interior_point(const Energy& energy, NewtonMatrix& matrix, const Rows& rows,
                                          const InteriorPointStart& start, const InteriorPointSettings& settings,
                                          Context& context);
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "base/context.h"
-#include "numerics/qp/exchange_pool_factor.h"
+#include "numerics/qp/exchange/exchange_pool_factor.h"
 
 namespace formwright::bounded_qp_detail {
 
@@ -35,6 +35,7 @@ struct PoolSolution {
   Eigen::VectorXd push;        // rows; by about how much y moves its own row, in units of d
   double residual = 0;         // how far active rows are from being held, in units of d
   bool contradictory = false;  // no w and v satisfy all rows (as far as double precision tells)
+  bool stopped = false;        // the work ran out before the rows were settled
   int pivots = 0;              // linear systems solved
 };
 
@@ -48,8 +49,13 @@ class PoolQp {
   /// `grown`, the problem is the one before with rows added behind: what was factored of it is used again.
   void set_problem(Eigen::Ref<const Eigen::MatrixXd> gram, PoolProblem problem, bool grown);
 
-  /// `start`: active flags to begin with (rows), `w`: drivers to stay near, `tolerance`: on slack, in units of d.
-  PoolSolution solve(const std::vector<char>& start, const Eigen::VectorXd& w, double tolerance, Context& context);
+  /// `start`: active flags to begin with (rows), `w`: drivers to stay near, `tolerance`: on slack, in units of d. Stops
+  /// with `stopped` once `work` has passed `max_work`.
+  PoolSolution solve(const std::vector<char>& start, const Eigen::VectorXd& w, double tolerance, double max_work,
+                     Context& context);
+
+  /// Multiplications of all calls so far, about (PoolFactor::work).
+  double work() const { return work_ + factor_.work(); }
 
   /// One step of iterative refinement on the last active set, with the same factor: solves
   ///   S_AA dy + B_A dw = slack_error_A,   B_A^T dy - P dw = balance_error.
@@ -77,6 +83,8 @@ class PoolQp {
   PoolFactor factor_;
   Eigen::VectorXd y_, w_;
   int pivots_ = 0;
+  mutable double work_ = 0;
+  double max_work_ = 0;
 };
 
 }  // namespace formwright::bounded_qp_detail

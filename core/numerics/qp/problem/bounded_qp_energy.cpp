@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "numerics/qp/bounded_qp_energy.h"
+#include "numerics/qp/problem/bounded_qp_energy.h"
 
 #include <algorithm>
 #include <cmath>

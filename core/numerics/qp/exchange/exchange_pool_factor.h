@@ -38,6 +38,10 @@ class PoolFactor {
 
   double proximal() const { return proximal_; }
 
+  /// Multiplications so far, about: the same number on every machine. Those of products of a matrix and a vector count
+  /// five times, because they wait for memory.
+  double work() const { return work_; }
+
   /// By how much round-off in y may have grown because of rows that are held at y = 0 by the border; at least 1.
   double cancellation() const { return cancellation_; }
 
@@ -53,6 +57,7 @@ class PoolFactor {
   const Eigen::MatrixXd& B_;
   const Eigen::MatrixXd& P_;
   double proximal_ = 0, cancellation_ = 1;
+  mutable double work_ = 0;
   std::vector<int> order_;     // rows in L
   std::vector<int> place_;     // of every row in order_, or -1
   std::vector<int> dropped_;   // places in L of rows held at y = 0, one column of U_ each

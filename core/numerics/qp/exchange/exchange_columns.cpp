@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "numerics/qp/exchange_columns.h"
+#include "numerics/qp/exchange/exchange_columns.h"
 
 #include <algorithm>
 
@@ -27,6 +27,9 @@ void ExchangeColumns::append(std::span<const SparseVector> columns, Context& con
   if (added == 0) return;
   for (int c = 0; c < added; ++c) {
     const SparseVector& y = columns[index(c)];
+    // The columns of L on its path are about as long on average as half of the path is.
+    const auto path = static_cast<double>(y.index.size());
+    work_ += 0.25 * path * path;
     for (std::size_t p = 0; p < y.index.size();) {
       const int number = y.index[p] / panel_height;
       Panel& panel = panels_[index(number)];
@@ -69,6 +72,12 @@ void ExchangeColumns::append(std::span<const SparseVector> columns, Context& con
     }
   });
   for (std::size_t s = 1; s < strands; ++s) partial[0] += partial[s];
+  for (const Panel& panel : panels_) {
+    const auto all = static_cast<double>(panel.column.size());
+    const auto fresh =
+        static_cast<double>(panel.column.end() - std::lower_bound(panel.column.begin(), panel.column.end(), before));
+    work_ += panel_height * all * fresh;
+  }
   gram_.block(0, before, count_, added) = partial[0];
   gram_.block(before, 0, added, before) = partial[0].topRows(before).transpose();
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "numerics/qp/bounded_qp_rows.h"
+#include "numerics/qp/problem/bounded_qp_rows.h"
 
 #include <algorithm>
 #include <cmath>

@@ -21,7 +21,7 @@ using namespace bounded_qp_detail;
 namespace {
 // Of the work that the interior point would take: what an exchange may take before it is given up. It is faster where
 // few constraints hold.
-constexpr double exchange_share = 0.25, exchange_only_share = 20;
+constexpr double exchange_share = 0.6, exchange_only_share = 20;
 constexpr double min_exchange_work = 3e8;  // about a tenth of a second
 constexpr double usual_iterations = 20;
 constexpr double factor_growth = 3, entry_growth = 2;        // of the factor by order rows

@@ -9,6 +9,7 @@
 #include "job/operations/thermoform/thermoform_input.h"
 #include "job/operations/thermoform/thermoform_operations.h"
 #include "thermoform/forming_glb.h"
+#include "thermoform/measured/measured_object.h"
 #include "thermoform/sheet/sheet_presets.h"
 
 namespace formwright {
@@ -22,7 +23,10 @@ std::vector<OutputInfo> thermoform_simulate_outputs() {
       {"forming.glb", "model/gltf-binary", "Animation",
        "Animation of sagging, raising and vacuum, coloured by thickness.", true},
       {"mould.obj", "model/obj", "Model as placed",
-       "The model in the machine's coordinates, as placed on the platform.", false}};
+       "The model in the machine's coordinates, as placed on the platform.", false},
+      {"setup.json", "application/json", "Set-up for measuring",
+       "What the machine was set to. With the model as placed and a scan, the evidence finds out what differs on the formed part. A measured object has its own.",
+       false}};
 }
 
 std::vector<ReportField> thermoform_simulate_report_fields() {
@@ -150,6 +154,9 @@ OperationResult run_thermoform_simulate(const OperationCall& call, const Json& g
     model.mesh.V.col(2).array() += shift_z;
     add("mould.obj", write_model(model, MeshFormat::obj, call.context));
   }
+  // A scanner sees the face away from the mould.
+  if (!simulation.setup && call.wants("setup.json"))
+    add("setup.json", to_bytes(write_object_setup(o, MeasuredSurface::outer).dump(1) + "\n"));
 
   Json& report = result.report;
   const FormedSheet& sheet = formed.sheet;

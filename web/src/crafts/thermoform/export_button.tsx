@@ -28,6 +28,7 @@ const menu: readonly (readonly [operation: string, output: string])[] = [
   [simulate, 'sheet.ply'],
   [simulate, 'forming.glb'],
   [simulate, 'mould.obj'],
+  [simulate, 'setup.json'],
 ];
 
 function exportsOf(session: ThermoformSession): Export[] {

@@ -156,7 +156,10 @@ void GrblDriver::tick(double now_s) {
     send_now(soft_reset), reset_sent_s_ = now_s, ++resets_;
   if (stopping_ == Stopping::resetting && now_s - stopping_s_ > reset_s) {
     stopping_ = Stopping::no;
-    note("The machine did not answer the reset. If it still moves, switch it off.", now_s);
+    note(alarm_ && waits_for_reset(*alarm_, machine_.kind())
+             ? "What raised the alarm is still there: end it, then unlock or home again."
+             : "The machine did not answer the reset. If it still moves, switch it off.",
+         now_s);
   }
   watch_silence(now_s);
   settle_cancelled_jog(now_s);

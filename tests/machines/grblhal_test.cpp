@@ -39,6 +39,19 @@ TEST_CASE("GrblHal.ABoardThatWantsToBeHomedIsReadBehindItsAlarm") {
   REQUIRE(talk.pass_until([&] { return talk.phase() == "idle" && talk.state()["position_known"] == true; }, 10));
 }
 
+TEST_CASE("GrblHal.ALockThatIsReportedOnceMoreIsNoFailureOfHoming") {
+  GrblTalk talk({.grblhal = true});
+  REQUIRE(talk.pass_until([&] { return talk.state()["connection"] == "ready"; }, 5));
+  talk.tell(home);
+  say(talk, "<Alarm:11|MPos:0.000,0.000,0.000|Bf:100,1023|FS:0,0>");
+  CHECK(talk.phase() == "homing");
+  // Homing that fails says so.
+  say(talk, "ALARM:9");
+  say(talk, "<Alarm:9|MPos:0.000,0.000,0.000|Bf:100,1023|FS:0,0>");
+  CHECK(talk.phase() == "alarm");
+  CHECK(talk.state()["alarm"]["code"] == 9);
+}
+
 TEST_CASE("GrblHal.AlarmsAreKnownFromReportsAlone") {
   GrblTalk talk({.resets_on_open = false, .grblhal = true});
   REQUIRE(talk.pass_until([&] { return talk.state()["connection"] == "ready"; }, 5));

@@ -85,7 +85,7 @@ void GrblDriver::reset(double now_s) {
 void GrblDriver::send(GrblStream::Line line, double now_s) {
   say("sent", line.text, now_s);
   write(line.text + "\n");
-  if (line.text == "$H") homing_ = true, phase_ = MachinePhase::homing, lose_position();
+  if (line.text == "$H") homing_ = true, homing_since_s_ = now_s, phase_ = MachinePhase::homing, lose_position();
   if (line.text.starts_with("$J") && phase_ != MachinePhase::jogging)
     phase_ = MachinePhase::jogging, asked_s_ = now_s;  // before a report tells it
   if (stream_.empty()) progress_s_ = now_s;

@@ -192,6 +192,7 @@ class GrblDriver final : public MachineDriver {
   bool ended_badly_ = false;        // M5 is owed once the machine takes lines again
   int dark_refused_ = 0;
   double stray_since_s_ = -1;
+  double homing_since_s_ = 0;
   double reset_sent_s_ = 0;
   int resets_ = 0;
   double jog_cancelled_s_ = -1;  // until what was sent before is answered or known to be dropped

@@ -8,6 +8,7 @@ namespace formwright {
 namespace {
 
 constexpr double asking_s = 0.2;
+constexpr double homing_begins_s = 1;
 constexpr int identifications = 3;
 
 }  // namespace
@@ -184,7 +185,9 @@ void GrblDriver::hear_places(const GrblReport& report) {
 
 void GrblDriver::hear_report(const GrblReport& report, double now_s) {
   asked_s_ = std::min(asked_s_, now_s);
-  phase_ = report.phase;
+  // The lock may be reported once more before the line that homes is read; homing that fails says ALARM.
+  const bool not_begun = homing_ && report.phase == MachinePhase::alarm && now_s - homing_since_s_ < homing_begins_s;
+  phase_ = not_begun ? MachinePhase::homing : report.phase;
   pendant_ = report.pendant.value_or(pendant_);
   if (report.tool_change && !tool_change_)
     note("The machine waits for a tool change: change the tool, then resume.", now_s);

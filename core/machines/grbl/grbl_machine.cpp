@@ -115,8 +115,8 @@ std::array<bool, 3> GrblMachine::homed_axes() const {
   std::array<bool, 3> axes{};
   for (int axis = 0; axis < 3; ++axis)
     for (const int cycle : {44, 45, 46}) axes[static_cast<std::size_t>(axis)] |= setting_has_bit(cycle, axis, false);
-  const bool told = kind_ == GrblFirmware::grblhal && (axes[0] || axes[1] || axes[2]);
-  return told ? axes : std::array<bool, 3>{true, true, true};
+  const bool reported = kind_ == GrblFirmware::grblhal && (axes[0] || axes[1] || axes[2]);
+  return reported ? axes : std::array<bool, 3>{true, true, true};
 }
 
 double GrblMachine::setting(int number, double fallback) const {

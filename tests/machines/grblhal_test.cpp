@@ -98,6 +98,37 @@ TEST_CASE("GrblHal.LinesThatACancelledJogDropsAreNotWaitedFor") {
   }
 }
 
+TEST_CASE("GrblHal.AFullPlannerLeavesJogsUnreadWhenTheyAreCancelled") {
+  GrblTalk talk({.grblhal = true});
+  talk.connect_and_home();
+  for (int i = 0; i < 200; ++i) {
+    talk.tell({{"do", "jog"}, {"x_mm", 0.2}, {"speed_mm_per_s", 1}});
+    talk.pass(0.01);
+  }
+  talk.tell(jog_cancel);
+  talk.pass(2);
+  CHECK(talk.phase() == "idle");
+  const double there_mm = talk.machine.position_mm()[1];
+  talk.tell({{"do", "jog"}, {"y_mm", 3}, {"speed_mm_per_s", 20}});
+  talk.pass(2);
+  CHECK(std::abs(talk.machine.position_mm()[1] - there_mm - 3) < 1e-6);
+  talk.pass(4);
+  CHECK_FALSE(heard(talk, "did not answer every line"));
+}
+
+TEST_CASE("GrblHal.ARefusedDwellKeepsNoPulseOnThoughTheProgramDies") {
+  GrblTalk talk({.grblhal = true});
+  talk.connect_and_home();
+  talk.machine.refuse_line("G4P1", 28);
+  talk.tell(focus);
+  talk.pass(0.002);
+  talk.kill_host(true);
+  talk.leave_alone(20);
+  CHECK(talk.machine.lines().back() == "G0");  // the pulse had left whole
+  CHECK_FALSE(talk.machine.beam());
+  CHECK(lit_s(talk) <= 1.1);
+}
+
 TEST_CASE("GrblHal.ReportsAreAskedForWhereQuestionMarksAreText") {
   GrblTalk talk({.grblhal = true});
   talk.machine.set_setting(39, 0);

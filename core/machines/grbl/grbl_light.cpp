@@ -87,6 +87,13 @@ void GrblDriver::cancel_jog(double now_s) {
 
 void GrblDriver::settle_cancelled_jog(double now_s) {
   if (jog_cancelled_s_ < 0) return;
+  if (phase_ == MachinePhase::jogging) {
+    if (now_s - jog_cancelled_s_ <= settling_s) return;
+    // A jog that waited for room in the planner is carried out behind the cancelled ones (motion_control.c mc_line).
+    send_now(jog_cancel_command);
+    jog_cancelled_s_ = now_s;
+    return;
+  }
   const bool quiet = phase_ == MachinePhase::idle && idle_since_s_ >= 0 &&
                      now_s - std::max({jog_cancelled_s_, progress_s_, idle_since_s_}) > settling_s;
   if (!stream_.empty() && !quiet) return;

@@ -47,7 +47,16 @@ Terminal::Terminal(const MachineRegistry& registry, const Machine& machine, cons
 }
 
 Terminal::~Terminal() {
+  let_stop_end();
   if (!session_->over()) session_->end("The program ended.");
+}
+
+void Terminal::let_stop_end() {
+  const auto end = std::chrono::steady_clock::now() + 3s;
+  while (!session_->over() && session_->state()["phase"] == "stopping" && std::chrono::steady_clock::now() < end) {
+    io_.restart();
+    io_.run_for(20ms);
+  }
 }
 
 void Terminal::serve() {
@@ -111,9 +120,12 @@ void Terminal::know_position() {
     run_until([](const Json& s) { return s["position_known"] == true; }, 5,
               "The machine did not accept the origin: check its console.");
   } else {
-    throw Error(ErrorCode::could_not_solve, "machine",
-                machine_.name + " is not ready (" + now["phase"].get<std::string>() +
-                    "): " + sentence_of(now["alarm"], "look at its display."));
+    throw Error(
+        ErrorCode::could_not_solve, "machine",
+        machine_.name + " is not ready (" + now["phase"].get<std::string>() + "): " +
+            sentence_of(now["alarm"], now["phase"] == "paused"
+                                          ? "continue there, or end what it was doing by formwright machine stop."
+                                          : "look at its display."));
   }
 }
 
@@ -155,11 +167,7 @@ void Terminal::stop_and_throw() {
   const bool from_elsewhere = stop_asked;
   if (from_elsewhere) session_->look_for_stop();
   else if (!session_->over()) session_->command({{"do", "stop"}});
-  const auto end = std::chrono::steady_clock::now() + 3s;
-  while (!session_->over() && session_->state()["phase"] == "stopping" && std::chrono::steady_clock::now() < end) {
-    io_.restart();
-    io_.run_for(20ms);
-  }
+  let_stop_end();
   session_->end(from_elsewhere ? "Stopped by another process." : "Stopped with Ctrl-C, or its terminal was closed.");
   throw Error(ErrorCode::cancelled, "",
               "Stopped: laser off, the rest of the job is not sent. Home the machine before the next job.");

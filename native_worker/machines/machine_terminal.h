@@ -60,6 +60,8 @@ class Terminal {
   static std::string sentence_of(const Json& message, const std::string& otherwise);
 
  private:
+  /// A reset may still be owed to a machine that is being held.
+  void let_stop_end();
   /// Lets the port and the clock run for 20 ms.
   void serve();
   [[noreturn]] void stop_and_throw();

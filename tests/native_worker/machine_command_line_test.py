@@ -49,6 +49,22 @@ class CommandLine(unittest.TestCase):
         self.assertEqual(seen["bytes_lost"], 0)
         self.assertTrue(any(e["event"] == "ended" and e["how"] == "done" for e in self.entries()))
 
+    def test_a_job_that_fails_leaves_nothing_held(self):
+        for board in ((), ("grblhal",)):
+            laser = peers.VirtualGrbl("no-homing", "refuses=G1Y7", *board)
+            try:
+                peers.add_machine(self.data, "Refuses", f"serial:{laser.port}")
+                self.job.write_text("G21\nG90\nG0 X1 Y1\nM4 S500\nG1 X90 F600\nG1 Y7\nG1 X1\nM5\n")
+                run = peers.formwright("send", "--machine", "Refuses", "--job", self.job, "--yes", data=self.data)
+                self.assertNotEqual(run.returncode, 0)
+                self.assertIn("The target of the move is not valid", run.stderr)
+                seen = laser.look()
+                self.assertIn(seen["state"], ("Idle", "Alarm"))
+                self.assertFalse(seen["beam"])
+            finally:
+                laser.stop()
+                peers.formwright("remove", "Refuses", data=self.data)
+
     def test_nothing_moves_without_a_yes(self):
         run = peers.formwright("send", "--machine", "laser", "--job", self.job, data=self.data, stdin=subprocess.DEVNULL)
         self.assertEqual(run.returncode, 2, run.stderr)

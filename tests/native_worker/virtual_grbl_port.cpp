@@ -30,11 +30,14 @@ int main(int argc, char** argv) {
   for (int i = 1; i < argc; ++i) {
     if (std::string_view(argv[i]) == "no-homing") options.homes = false;
     if (std::string_view(argv[i]) == "mill") options.laser_mode = false;
+    if (std::string_view(argv[i]) == "grblhal") options.grblhal = true;
   }
   options.homing_s = 0.5;
   VirtualGrbl machine(options);
   const auto start = std::chrono::steady_clock::now();
   const auto now_s = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
+  for (int i = 1; i < argc; ++i)
+    if (std::string_view(argv[i]).starts_with("refuses=")) machine.refuse_line(argv[i] + 8, 33);
   machine.open(0);
   std::string outgoing;
   double hold_monotonic_s = 0;  // when a feed hold came last, of the computer's monotonic clock
@@ -44,7 +47,7 @@ int main(int argc, char** argv) {
     char buffer[4096];
     if (const ssize_t count = ::read(port, buffer, sizeof buffer); count > 0) {
       const std::string_view said(buffer, static_cast<std::size_t>(count));
-      if (said.find('!') != std::string_view::npos)
+      if (said.find_first_of("!\x82") != std::string_view::npos)
         hold_monotonic_s = std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
       machine.receive(said, now_s());
     }

@@ -101,7 +101,7 @@ struct Totals {
   double strokes_s = 0, focus_s = 0, elsewhere_s = 0, farthest_mm = 0, longest_focus_after_kill_s = 0;
 };
 
-VirtualGrblOptions random_machine(Random& random) {
+VirtualGrblOptions random_machine(Random& random, std::uint64_t seed) {
   VirtualGrblOptions options;
   options.homes = random.uniform() < 0.7;
   options.origin_low = random.uniform() < 0.5;
@@ -109,6 +109,7 @@ VirtualGrblOptions random_machine(Random& random) {
   options.soft_limits = options.homes && random.uniform() < 0.3;
   if (random.uniform() < 0.4) options.planner_blocks = 35, options.rx_bytes = 1024;
   options.error_latch = random.uniform() < 0.4;
+  options.grblhal = Random(seed + 1).uniform() < 0.3;  // drawn apart, so that older seeds keep their sequences
   options.homing_s = 0.5;
   options.acceleration_mm_per_s2 = random.uniform() < 0.5 ? 500 : 2000;
   return options;
@@ -117,7 +118,7 @@ VirtualGrblOptions random_machine(Random& random) {
 class Sequence {
  public:
   Sequence(std::uint64_t seed, Totals& totals)
-      : random_(seed), totals_(totals), talk_(random_machine(random_), {}, seed) {
+      : random_(seed), totals_(totals), talk_(random_machine(random_, seed), {}, seed) {
     if (random_.uniform() < 0.2) talk_.machine.set_setting(13, 1);
     talk_.machine.set_setting(10, static_cast<double>(random_.below(4)));
     if (random_.uniform() < 0.2) talk_.machine.set_setting(30, 1000), talk_.machine.set_setting(31, 5);

@@ -15,7 +15,6 @@ using machines_detail::refuse;
 using machines_detail::require_confirmation;
 
 constexpr double max_grbl_distance_mm = 10000;
-constexpr char jog_cancel_command = static_cast<char>(0x85);
 
 }  // namespace
 
@@ -23,7 +22,7 @@ std::vector<std::string> GrblDriver::possible_commands() const {
   std::vector<std::string> can;
   if (connection_ == MachineConnection::closed) return can;
   can.push_back("stop");
-  if (connection_ != MachineConnection::ready || stopping_ != Stopping::no) return can;
+  if (connection_ != MachineConnection::ready || stopping_ != Stopping::no || pendant_) return can;
   const auto add = [&](std::initializer_list<const char*> names) { can.insert(can.end(), names.begin(), names.end()); };
   const bool busy = job_active();
   if (phase_ == MachinePhase::alarm) {
@@ -58,6 +57,7 @@ void GrblDriver::command(const Json& command, double now_s) {
 void GrblDriver::refuse_now(const std::string& what) const {
   if (connection_ != MachineConnection::ready)
     refuse(what, "The machine does not answer: check that it is on and connected.");
+  if (pendant_) refuse(what, "A hand-held control has the machine: give it back there first.");
   if (what == "home" && !homes())
     refuse(what, "Homing is not switched on in this machine ($22): jog to the origin and set it there.");
   if (what == "start" && program_.line_count() == 0) refuse(what, "No job is loaded: choose one first.");
@@ -76,13 +76,13 @@ void GrblDriver::act_on(const std::string& what, const Json& command, double now
   if (what == "home") home(command, now_s);
   else if (what == "unlock") {
     lose_position();
-    if (limits_hit_ || !stream_.empty()) after_banner_ = {"$X"}, reset(now_s);
+    if (needs_reset_ || !stream_.empty()) after_banner_ = {"$X"}, reset(now_s);
     else queue("$X");
   } else if (what == "jog") jog(command);
   else if (what == "jog_cancel") {
     std::erase_if(by_hand_, [](const std::string& line) { return line.starts_with("$J"); });
     focus_until_s_.reset();
-    send_now(jog_cancel_command);
+    cancel_jog(now_s);
   } else if (what == "set_origin") set_origin(command);
   else if (what == "go_to") go_to(command);
   else if (what == "frame") frame(command);
@@ -91,11 +91,11 @@ void GrblDriver::act_on(const std::string& what, const Json& command, double now
   else if (what == "start") start(command, now_s);
   else if (what == "pause") {
     pause_asked_ = true;
-    send_now('!');
+    send_now(feed_hold());
   } else if (what == "resume") {
     require_confirmation(command, "The machine continues with its laser or spindle on");
     pause_asked_ = false;
-    send_now('~');
+    send_now(cycle_start());
     phase_ = MachinePhase::running;  // until the next report: lines may follow at once
   } else if (what == "send") send_by_hand(command);
   else override_speeds(command);
@@ -107,7 +107,7 @@ void GrblDriver::home(const Json& command, double now_s) {
   refused_.reset();
   focus_until_s_.reset();
   // A light pulse is waited for; other unanswered lines are dropped by a reset.
-  if (limits_hit_ || (!stream_.empty() && !pulse_)) after_banner_ = {"$H"}, reset(now_s);
+  if (needs_reset_ || (!stream_.empty() && !pulse_)) after_banner_ = {"$H"}, reset(now_s);
   else queue("$H");
 }
 
@@ -198,7 +198,7 @@ void GrblDriver::send_by_hand(const Json& command) {
   std::erase_if(line, [](char c) { return c == ' ' || c == '\t'; });
   std::transform(line.begin(), line.end(), line.begin(),
                  [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; });
-  if (line == "?") return send_now('?');
+  if (line == "?") return send_now(ask_report());
   if (line.find_first_of("!~?") != std::string::npos)
     refuse("line", "Use the buttons to pause and to continue, because the program checks that the machine obeys them.");
   const LineEffect effect = effect_of(line);
@@ -206,7 +206,7 @@ void GrblDriver::send_by_hand(const Json& command) {
     require_confirmation(command, effect.fires ? "The line \"" + line + "\" may turn the laser or spindle on"
                                                : "The line \"" + line + "\" moves the machine");
   if (effect.fires && is_laser()) {
-    if (setting(32, 1) == 0) refuse("line", "Laser mode is off in the machine: send $32=1 first.");
+    if (setting(32, 1) != 1) refuse("line", "Laser mode is off in the machine: send $32=1 first.");
     line = with_dynamic_power(line);  // dark at rest; Focus has a light of its own
   }
   // GRBL takes "$H" with anything behind it for homing that never ends (system.c), but in builds that home single axes.

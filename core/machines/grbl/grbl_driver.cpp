@@ -8,13 +8,15 @@
 namespace formwright {
 namespace {
 
-constexpr char ask_report = '?', feed_hold = '!', soft_reset = 0x18;
+constexpr char soft_reset = 0x18;
 constexpr std::size_t longest_line = 78;  // GRBL's line buffer has 80 with both ends
 constexpr double boot_s = 1.0;            // boards that reset on opening print their banner within this
 constexpr double greeting_s = 10, silence_s = 3, homing_s = 180;
 constexpr double asking_s = 0.2, asking_idle_s = 0.5;  // at most 5 Hz: reports cost the machine time
 constexpr double hold_before_reset_s = 0.5, reset_s = 2;
 constexpr double lost_answer_s = 3;
+constexpr double reset_again_s = 0.4;
+constexpr int max_resets = 4;
 
 }  // namespace
 
@@ -39,6 +41,7 @@ void GrblDriver::closed(double now_s) {
   stopping_ = Stopping::no;
   focus_until_s_.reset();
   dark_ = darkening_ = pulse_ = light_by_hand_ = false;
+  jog_cancelled_s_ = -1;
   connection_ = MachineConnection::closed;
   phase_ = MachinePhase::unknown;
   lose_position();
@@ -63,16 +66,17 @@ void GrblDriver::stop(const char* how, double now_s) {
   stopping_ = Stopping::holding;
   stopping_s_ = now_s;
   // A hold in the middle of a pulse would keep it on in machines that do not darken their laser then; a reset ends it.
-  if (!pulse_) send_now(feed_hold);
+  if (!pulse_) send_now(feed_hold());
   // A hold turns the beam off in laser mode only; homing, sleep and silence hear nothing but a reset.
-  const bool beam_stays = is_laser() && setting(32, 1) == 0;
+  const bool beam_stays = is_laser() && (setting(32, 1) != 1 || hold_keeps_beam());
   if (homing_ || beam_stays || pulse_ || phase_ == MachinePhase::sleep || connection_ != MachineConnection::ready)
     reset(now_s);
 }
 
 void GrblDriver::reset(double now_s) {
   stopping_ = Stopping::resetting;
-  stopping_s_ = now_s;
+  stopping_s_ = reset_sent_s_ = now_s;
+  resets_ = 1;
   stream_.clear();
   dark_ = darkening_ = pulse_ = false;
   send_now(soft_reset);
@@ -81,7 +85,7 @@ void GrblDriver::reset(double now_s) {
 void GrblDriver::send(GrblStream::Line line, double now_s) {
   say("sent", line.text, now_s);
   write(line.text + "\n");
-  if (line.text == "$H") homing_ = true, phase_ = MachinePhase::homing, lose_position();
+  if (line.text == "$H") homing_ = true, homing_since_s_ = now_s, phase_ = MachinePhase::homing, lose_position();
   if (line.text.starts_with("$J") && phase_ != MachinePhase::jogging)
     phase_ = MachinePhase::jogging, asked_s_ = now_s;  // before a report tells it
   if (stream_.empty()) progress_s_ = now_s;
@@ -90,7 +94,8 @@ void GrblDriver::send(GrblStream::Line line, double now_s) {
 }
 
 void GrblDriver::pump(double now_s) {
-  if (connection_ == MachineConnection::closed || stopping_ != Stopping::no || limits_hit_) return;
+  if (connection_ == MachineConnection::closed || stopping_ != Stopping::no || needs_reset_ || pendant_) return;
+  if (jog_cancelled_s_ >= 0) return;
   if (!pump_by_hand(now_s)) return;
   if (job_active()) pump_job(now_s);
   else send_pulse(now_s);
@@ -141,15 +146,23 @@ void GrblDriver::tick(double now_s) {
       connection_ == MachineConnection::greeting && machine_.firmware().empty() && now_s - opened_s_ < boot_s;
   const bool rests = phase_ == MachinePhase::idle && !job_active() && stream_.empty() && !focus_until_s_;
   if (!booting && now_s - asked_s_ >= (rests ? asking_idle_s : asking_s)) {
-    send_now(ask_report);
+    send_now(ask_report());
     asked_s_ = now_s;
   }
   if (stopping_ == Stopping::holding && now_s - stopping_s_ > hold_before_reset_s) reset(now_s);
+  // Behind an alarm the firmware forgets a reset that came before it was ready to wait for one (protocol.c
+  // protocol_exec_rt_system).
+  if (stopping_ == Stopping::resetting && needs_reset_ && resets_ < max_resets && now_s - reset_sent_s_ > reset_again_s)
+    send_now(soft_reset), reset_sent_s_ = now_s, ++resets_;
   if (stopping_ == Stopping::resetting && now_s - stopping_s_ > reset_s) {
     stopping_ = Stopping::no;
-    note("The machine did not answer the reset. If it still moves, switch it off.", now_s);
+    note(alarm_ && waits_for_reset(*alarm_, machine_.kind())
+             ? "What raised the alarm is still there: end it, then unlock or home again."
+             : "The machine did not answer the reset. If it still moves, switch it off.",
+         now_s);
   }
   watch_silence(now_s);
+  settle_cancelled_jog(now_s);
   pump(now_s);
 }
 
@@ -222,12 +235,12 @@ Json GrblDriver::state(double now_s) const {
   state["power_percent"] = setting(30, 1000) > 0 ? 100 * power_.value_or(0) / setting(30, 1000) : 0;
   if (job_) state["job"]["careful_line"] = careful_line();
   if (alarm_) {
-    const GrblWords words = grbl_alarm(*alarm_);
+    const GrblWords words = grbl_alarm(*alarm_, machine_.kind());
     state["alarm"] = machines_detail::alarm_json(*alarm_, words.text, words.fix);
   }
   if (refused_)
     state["error"] = {{"code", refused_->code},
-                      {"text", grbl_error(refused_->code)},
+                      {"text", grbl_error(refused_->code, machine_.kind())},
                       {"line", refused_->line},
                       {"line_number", refused_->line_number}};
   state["laser_on"] = laser_on();
@@ -235,7 +248,8 @@ Json GrblDriver::state(double now_s) const {
   state["when_connection_ends"] = when_connection_ends();
   if (asks_z() && connection_ == MachineConnection::ready)
     state["z_choice"] = machines_detail::z_choice_json(
-        homes() && axes_known_[2] && offset_mm_ ? std::optional((*offset_mm_)[2]) : std::nullopt, z_set_s_, now_s);
+        homes_axis(2) && axes_known_[2] && offset_mm_ ? std::optional((*offset_mm_)[2]) : std::nullopt, z_set_s_,
+        now_s);
   state["can"] = possible_commands();
   return state;
 }

@@ -62,6 +62,11 @@ class GrblDriver final : public MachineDriver {
   bool pump_by_hand(double now_s);
   void pump_job(double now_s);
   void send(GrblStream::Line line, double now_s);
+  bool speaks_grblhal() const { return machine_.kind() == GrblFirmware::grblhal; }
+  /// The real-time commands that grblHAL hears wherever they stand; GRBL knows the printable ones only.
+  char ask_report() const { return speaks_grblhal() ? char(0x80) : '?'; }
+  char cycle_start() const { return speaks_grblhal() ? char(0x81) : '~'; }
+  char feed_hold() const { return speaks_grblhal() ? char(0x82) : '!'; }
   void queue(const std::string& line) { by_hand_.push_back(line); }
   void send_now(char real_time_command) { write_urgently(std::string_view(&real_time_command, 1)); }
   void reset(double now_s);
@@ -77,10 +82,15 @@ class GrblDriver final : public MachineDriver {
   void heed_light(const std::string& line);
   void hear_dark(std::optional<int> error, double now_s);
   void watch_light(double now_s);
+  void cancel_jog(double now_s);
+  /// grblHAL drops what it has not read when a jog is cancelled, so that some lines are never answered.
+  void settle_cancelled_jog(double now_s);
   void focus(const Json& command, double now_s);
   void send_pulse(double now_s);
   void hear_pulse(const GrblStream::Line& line, std::optional<int> error, double now_s);
   Json laser_on() const;
+  /// On boards that let the beam shine on in a hold (grblHAL $63), while the job is sent with M3.
+  bool hold_keeps_beam() const { return !dynamic_power() && !machine_.setting_has_bit(63, 0, true); }
   bool is_laser() const { return options_.tool == MachineTool::laser; }
 
   // grbl_start.cpp: whether, and how, a job begins.
@@ -127,7 +137,9 @@ class GrblDriver final : public MachineDriver {
   void override_speeds(const Json& command);
   double setting(int number, double fallback) const { return machine_.setting(number, fallback); }
   double speed_mm_per_min(const Json& command, double fallback_mm_per_s) const;
-  bool homes() const { return setting(22, 0) != 0; }
+  bool homes() const { return machine_.setting_has_bit(22, 0, false); }
+  /// Does homing find this axis's place?
+  bool homes_axis(std::size_t axis) const { return homes() && machine_.homed_axes()[axis]; }
   bool place_known() const { return axes_known_[0] && axes_known_[1]; }
 
   DriverOptions options_;
@@ -157,7 +169,10 @@ class GrblDriver final : public MachineDriver {
   bool closing_sent_ = false;  // the M5 behind the job
 
   enum class Stopping { no, holding, resetting } stopping_ = Stopping::no;
-  bool pause_asked_ = false, homing_ = false, limits_hit_ = false;
+  bool pause_asked_ = false, homing_ = false;
+  bool needs_reset_ = false;  // it hears nothing else
+  bool pendant_ = false;      // a hand-held control has the machine
+  bool tool_change_ = false;
   std::optional<int> alarm_;
   struct RefusedLine {
     int code;
@@ -177,6 +192,10 @@ class GrblDriver final : public MachineDriver {
   bool ended_badly_ = false;        // M5 is owed once the machine takes lines again
   int dark_refused_ = 0;
   double stray_since_s_ = -1;
+  double homing_since_s_ = 0;
+  double reset_sent_s_ = 0;
+  int resets_ = 0;
+  double jog_cancelled_s_ = -1;  // until what was sent before is answered or known to be dropped
   std::optional<double> focus_until_s_;
   std::string focus_power_;
   int pulses_ = 0;      // of this focus

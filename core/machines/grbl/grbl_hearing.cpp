@@ -8,6 +8,7 @@ namespace formwright {
 namespace {
 
 constexpr double asking_s = 0.2;
+constexpr double homing_begins_s = 1;
 constexpr int identifications = 3;
 
 }  // namespace
@@ -29,15 +30,15 @@ void GrblDriver::hear(const std::string& line, double now_s) {
   else if (line.starts_with("Grbl ") || line.starts_with("GrblHAL ")) hear_banner(line, now_s);
   else machine_.hear(line);
   version_heard_ = version_heard_ || line.starts_with("[VER:");
-  if (line.starts_with("[MSG:")) note(line.substr(5, line.size() - 6), now_s);
+  if (line.starts_with("[MSG:") && line.size() > 6) note(line.substr(5, line.size() - 6), now_s);
   // One byte of the ring buffer tells full from empty.
   if (line.starts_with("[OPT:") && machine_.buffer_bytes()) stream_.set_buffer_bytes(*machine_.buffer_bytes() - 1);
 }
 
 void GrblDriver::hear_banner(const std::string& line, double now_s) {
-  machine_.set_firmware(line.substr(line.find(' ') + 1, line.find(' ', line.find(' ') + 1) - line.find(' ') - 1));
+  machine_.hear_banner(line);
   machine_.reset_parser();
-  const bool asked_for = stopping_ == Stopping::resetting || !after_banner_.empty() || limits_hit_;
+  const bool asked_for = stopping_ == Stopping::resetting || !after_banner_.empty() || needs_reset_;
   if (!asked_for && job_active()) {
     end_job("failed", now_s);
     note("The machine restarted by itself during the job: check its power supply and cable, then home it.", now_s);
@@ -47,7 +48,7 @@ void GrblDriver::hear_banner(const std::string& line, double now_s) {
   by_hand_.clear();
   identifying_ = 0;
   stopping_ = Stopping::no;
-  pause_asked_ = homing_ = limits_hit_ = false;
+  pause_asked_ = homing_ = needs_reset_ = false;
   focus_until_s_.reset();
   // A reset puts the beam out, but a line of the machine's own may follow it ($N0).
   dark_ = darkening_ = light_by_hand_ = pulse_ = refused_before_ = false;
@@ -73,12 +74,14 @@ void GrblDriver::hear_alarm(int code, double now_s) {
   phase_ = MachinePhase::alarm;
   homing_ = false;
   if (code != 2) lose_position();
-  by_hand_.clear();
+  // What was sent to end an alarm goes on: grblHAL raises 11, FluidNC 14 right behind the banner that they waited for.
+  std::erase_if(by_hand_, [](const std::string& line) { return line != "$H" && line != "$X"; });
+  identifying_ = 0;  // the next report asks again what it is
   end_job("failed", now_s);
   stopping_ = Stopping::no;
   focus_until_s_.reset();
-  limits_hit_ = code == 1 || code == 2;
-  if (limits_hit_) reset(now_s);  // GRBL hears nothing else now, and does not even report
+  needs_reset_ = code == 1 || code == 2 || waits_for_reset(code, machine_.kind());
+  if (code == 1 || code == 2) reset(now_s);  // GRBL hears nothing else now, and does not even report
 }
 
 void GrblDriver::hear_answer(std::optional<int> error, double now_s) {
@@ -101,7 +104,7 @@ void GrblDriver::hear_answer(std::optional<int> error, double now_s) {
   if (line->pulse) return hear_pulse(*line, error, now_s);
   if (line->text == "$H") {
     homing_ = false;
-    axes_known_.fill(!error);
+    axes_known_ = error ? std::array<bool, 3>{} : machine_.homed_axes();
     if (!error) alarm_.reset(), refused_.reset();
   }
   if (line->text == "$X" && !error) alarm_.reset();
@@ -113,9 +116,9 @@ void GrblDriver::hear_answer(std::optional<int> error, double now_s) {
     phase_ = MachinePhase::running, idle_since_s_ = -1;
   if (line->text.starts_with("$J") && error)  // what follows was to begin where this one was to lead
     std::erase_if(by_hand_, [](const std::string& waiting) { return waiting.starts_with("$J"); });
-  if (line->text.starts_with("G10L20") && !error && !homes())
+  if (line->text.starts_with("G10L20") && !error)
     for (std::size_t axis = 0; axis < 3; ++axis)
-      axes_known_[axis] = axes_known_[axis] || line->text.find("XYZ"[axis]) != std::string::npos;
+      axes_known_[axis] = axes_known_[axis] || (!homes_axis(axis) && line->text.find("XYZ"[axis]) != std::string::npos);
   const bool sets_job_origin = line->text.starts_with("G10L20P0") || line->text.starts_with("G10L20P1");
   if (sets_job_origin && !error && line->text.find('Z') != std::string::npos) z_set_s_ = now_s;
   if (line->text.starts_with("G10") && error) offset_mm_.reset();
@@ -182,7 +185,13 @@ void GrblDriver::hear_places(const GrblReport& report) {
 
 void GrblDriver::hear_report(const GrblReport& report, double now_s) {
   asked_s_ = std::min(asked_s_, now_s);
-  phase_ = report.phase;
+  // The lock may be reported once more before the line that homes is read; homing that fails says ALARM.
+  const bool not_begun = homing_ && report.phase == MachinePhase::alarm && now_s - homing_since_s_ < homing_begins_s;
+  phase_ = not_begun ? MachinePhase::homing : report.phase;
+  pendant_ = report.pendant.value_or(pendant_);
+  if (report.tool_change && !tool_change_)
+    note("The machine waits for a tool change: change the tool, then resume.", now_s);
+  tool_change_ = report.tool_change;
   // A machine that works or is held reads no lines: what it is will be asked when it rests.
   const bool reads_lines = phase_ == MachinePhase::idle || phase_ == MachinePhase::alarm;
   const bool unknown_yet = connection_ == MachineConnection::greeting ||
@@ -193,8 +202,9 @@ void GrblDriver::hear_report(const GrblReport& report, double now_s) {
   }
   hear_places(report);
   if (report.power) power_ = report.power;
-  if (report.overrides) overrides_ = *report.overrides, spindle_on_ = report.spindle_on;
-  if (phase_ == MachinePhase::alarm && !alarm_) alarm_ = 0;
+  if (report.overrides) overrides_ = *report.overrides;
+  if (report.spindle_on) spindle_on_ = report.spindle_on;
+  if (phase_ == MachinePhase::alarm && alarm_.value_or(0) == 0) alarm_ = report.detail;
   if (phase_ != MachinePhase::idle) idle_since_s_ = -1;
   else if (idle_since_s_ < 0) idle_since_s_ = now_s;
   if (phase_ == MachinePhase::idle || phase_ == MachinePhase::running || phase_ == MachinePhase::jogging)

@@ -21,6 +21,7 @@ using machines_detail::require_confirmation;
 constexpr double pulse_s = 1;
 constexpr double stray_s = 1.5;  // two reports at rest
 constexpr int max_dark_refused = 3;
+constexpr double settling_s = 0.5;  // an answer takes a tenth of that
 constexpr char jog_cancel_command = static_cast<char>(0x85), power_override_reset = static_cast<char>(0x99);
 
 }  // namespace
@@ -66,7 +67,7 @@ void GrblDriver::watch_light(double now_s) {
     dark_ = false;
     by_hand_.clear();
     note("The machine reports its laser on though nothing asked for it: it is turned off.", now_s);
-    if (jogs) send_now(jog_cancel_command);
+    if (jogs) cancel_jog(now_s);
   } else if (now_s - stray_since_s_ > stray_s) {
     stray_since_s_ = -1;
     note("The laser did not turn off: the machine is reset. If the beam is still on, switch the machine off.", now_s);
@@ -77,10 +78,34 @@ void GrblDriver::watch_light(double now_s) {
     queue("M5");
 }
 
+/// At rest it is not sent: grblHAL empties its buffer (protocol.c CMD_JOG_CANCEL), and with it the M5 of a pulse.
+void GrblDriver::cancel_jog(double now_s) {
+  if (pulse_ || (phase_ != MachinePhase::jogging && !stream_.waits_for("$J"))) return;
+  send_now(jog_cancel_command);
+  if (speaks_grblhal() && !stream_.empty()) jog_cancelled_s_ = now_s;
+}
+
+void GrblDriver::settle_cancelled_jog(double now_s) {
+  if (jog_cancelled_s_ < 0) return;
+  if (phase_ == MachinePhase::jogging) {
+    if (now_s - jog_cancelled_s_ <= settling_s) return;
+    // A jog that waited for room in the planner is carried out behind the cancelled ones (motion_control.c mc_line).
+    send_now(jog_cancel_command);
+    jog_cancelled_s_ = now_s;
+    return;
+  }
+  const bool quiet = phase_ == MachinePhase::idle && idle_since_s_ >= 0 &&
+                     now_s - std::max({jog_cancelled_s_, progress_s_, idle_since_s_}) > settling_s;
+  if (!stream_.empty() && !quiet) return;
+  stream_.clear();
+  jog_cancelled_s_ = -1;
+}
+
 void GrblDriver::focus(const Json& command, double now_s) {
   const double power = number_of(command, "power_percent", 0, options_.focus_power_percent, absent_number);
   require_confirmation(command, "The laser shines at " + decimal(power) + " % without moving: eyes protected");
-  if (setting(32, 1) == 0)
+  if (const std::string sentence = machine_.keeps_beam_on(); !sentence.empty()) refuse("focus", sentence);
+  if (setting(32, 1) != 1)
     refuse("focus", "Laser mode is off in the machine: send $32=1 first, so that the light goes out by itself.");
   // spindle_control.c spindle_compute_pwm_value: then every S, 0 too, is full power.
   if (setting(31, 0) >= setting(30, 1000))
@@ -99,9 +124,10 @@ void GrblDriver::send_pulse(double now_s) {
   pulse_ = true;
   dark_ = light_behind_dark_ = false;
   std::string bytes;
-  // In laser mode the beam is on at rest only with M3 and a cutting motion.
-  for (const std::string& line :
-       {std::string("G1F1000"), "M3S" + focus_power_, "G4P" + decimal(pulse_s), std::string("M5"), std::string("G0")}) {
+  // In laser mode the beam is on at rest only with M3 and a cutting motion. The empty line ends what grblHAL does
+  // behind a refused one: it would refuse the M5, too (protocol.c).
+  for (const std::string& line : {std::string("G1F1000"), "M3S" + focus_power_, "G4P" + decimal(pulse_s), std::string(),
+                                  std::string("M5"), std::string("G0")}) {
     say("sent", line, now_s);
     bytes += line + "\n";
     stream_.sent({line, -1, false, dwell_s(line), true});

@@ -10,6 +10,13 @@
 
 namespace formwright {
 
+void GrblMachine::hear_banner(const std::string& line) {
+  const std::size_t space = line.find(' ');
+  firmware_ = line.substr(space + 1, line.find(' ', space + 1) - space - 1);
+  if (line.starts_with("GrblHAL")) kind_ = GrblFirmware::grblhal;
+  if (line.find("FluidNC") != std::string::npos) kind_ = GrblFirmware::fluidnc;
+}
+
 void GrblMachine::hear(const std::string& line) {
   if (line.starts_with("$N0=") || line.starts_with("$N1=")) {
     startup_[static_cast<std::size_t>(line[2] - '0')] = line.substr(4);
@@ -25,8 +32,13 @@ void GrblMachine::hear(const std::string& line) {
   if (colon == std::string::npos || line.back() != ']') return;
   const std::string name = line.substr(1, colon - 1), value = line.substr(colon + 1, line.size() - colon - 2);
   const double unit_mm = reports_inches().value_or(false) ? 25.4 : 1;
-  if (name == "VER") firmware_ = value.substr(0, value.find(':'));
-  else if (name == "OPT") hear_options(value);
+  if (name == "VER") {
+    firmware_ = value.substr(0, value.find(':'));
+    if (value.find("FluidNC") != std::string::npos) kind_ = GrblFirmware::fluidnc;
+  } else if (name == "FIRMWARE") {
+    if (value == "grblHAL") kind_ = GrblFirmware::grblhal;
+  }
+  if (name == "OPT") hear_options(value);
   else if (name == "GC") hear_modes(value);
   else if (name == "TLO") {
     const auto numbers = numbers_between_commas(value);
@@ -56,6 +68,7 @@ void GrblMachine::hear_modes(const std::string& modes) {
   read_gcode_words(line, true, words);
   for (const auto& [letter, value, has_number] : words) {
     if (letter == 'G' && value >= 54 && value < 60) work_system_ = static_cast<int>(value);
+    if (letter == 'G' && (value == 50 || value == 51)) scaled_ = value == 51;
     if (letter == 'M' && value >= 3 && value <= 5) spindle_ = static_cast<int>(value);
   }
 }
@@ -74,6 +87,7 @@ void GrblMachine::follow(const std::string& line) {
     if (letter != 'G') continue;
     if (value >= 54 && value < 60) work_system_ = static_cast<int>(value);
     if (value == 10) offsets_mm_.clear();  // the next report says them again
+    if (value == 50 || value == 51) scaled_ = value == 51;
     if (value == 92) offset = true;
     if (value > 92 && value < 92.3) g92_mm_ = {0, 0, 0};
     if (value >= 43 && value < 44) tool = true;
@@ -89,6 +103,20 @@ void GrblMachine::reset_parser() {
   spindle_ = 5;
   g92_mm_ = {0, 0, 0};
   tool_mm_ = 0;
+  scaled_ = false;
+}
+
+bool GrblMachine::setting_has_bit(int number, int bit, bool fallback) const {
+  const auto found = settings_.find(number);
+  return found == settings_.end() ? fallback : (static_cast<long>(found->second) >> bit & 1) != 0;
+}
+
+std::array<bool, 3> GrblMachine::homed_axes() const {
+  std::array<bool, 3> axes{};
+  for (int axis = 0; axis < 3; ++axis)
+    for (const int cycle : {44, 45, 46}) axes[static_cast<std::size_t>(axis)] |= setting_has_bit(cycle, axis, false);
+  const bool reported = kind_ == GrblFirmware::grblhal && (axes[0] || axes[1] || axes[2]);
+  return reported ? axes : std::array<bool, 3>{true, true, true};
 }
 
 double GrblMachine::setting(int number, double fallback) const {
@@ -114,6 +142,18 @@ std::string GrblMachine::misplaces() const {
     return "An offset by G92 is in force in the machine, so that the job would go elsewhere: send G92.1 first.";
   if (tool_mm_ != 0)
     return "A tool length (G43.1) is in force in the machine, so that the job would go elsewhere: send G49 first.";
+  if (scaled_)
+    return "A scale (G51) is in force in the machine, so that the job would be of another size: send G50 first.";
+  return "";
+}
+
+std::string GrblMachine::keeps_beam_on() const {
+  if (setting(34, 0) > 0)
+    return "The laser's output is not dark when it is off ($34=" + machines_detail::decimal(setting(34, 0)) +
+           "): send $34=0 first.";
+  if (setting_has_bit(9, 2, false))
+    return "Laser mode is taken from the laser's output ($9), so the beam would stay on at every corner and travel: send "
+           "$9=1 first.";
   return "";
 }
 

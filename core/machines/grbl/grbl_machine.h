@@ -7,6 +7,8 @@
 #include <optional>
 #include <string>
 
+#include "machines/grbl/grbl_words.h"
+
 namespace formwright {
 
 class GrblMachine {
@@ -29,7 +31,12 @@ class GrblMachine {
   std::optional<bool> reports_inches() const;
 
   std::string firmware() const { return firmware_; }
-  void set_firmware(const std::string& firmware) { firmware_ = firmware; }
+  GrblFirmware kind() const { return kind_; }
+  /// The line that the machine says when it starts, "Grbl 1.1h ['$' for help]" and the like.
+  void hear_banner(const std::string& line);
+  bool setting_has_bit(int number, int bit, bool fallback) const;
+  /// Which axes know their place behind $H: $44 to $46 name them on grblHAL, all do elsewhere.
+  std::array<bool, 3> homed_axes() const;
   /// False until [OPT:...] was heard.
   bool tells_options() const { return !option_letters_.empty(); }
   bool has_option(char letter) const { return option_letters_.find(letter) != std::string::npos; }
@@ -43,6 +50,8 @@ class GrblMachine {
   std::optional<Point> offset_mm(int system) const;
   /// What of the parser's state would carry a job elsewhere than it says, as a sentence; "" for nothing.
   std::string misplaces() const;
+  /// A sentence where the settings let the beam shine though it is turned off, or in laser mode at rest; "" where not.
+  std::string keeps_beam_on() const;
   /// A sentence where the machine runs a line by itself that moves or fires; "" where it does not.
   std::string runs_by_itself() const;
 
@@ -56,7 +65,9 @@ class GrblMachine {
   std::array<std::string, 2> startup_;
   int planner_blocks_ = 15;
   std::optional<int> buffer_bytes_;
+  GrblFirmware kind_ = GrblFirmware::grbl;
   int work_system_ = 54, spindle_ = 5;
+  bool scaled_ = false;  // G51
   std::map<int, Point> offsets_mm_;
   Point g92_mm_{0, 0, 0};
   double tool_mm_ = 0;

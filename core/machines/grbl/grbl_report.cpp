@@ -15,7 +15,8 @@ std::optional<std::array<double, 3>> point(std::string_view text) {
 }
 
 std::optional<MachinePhase> phase_of(std::string_view name, int detail) {
-  if (name == "Idle" || name == "Tool") return MachinePhase::idle;
+  if (name == "Tool") return MachinePhase::paused;
+  if (name == "Idle") return MachinePhase::idle;
   if (name == "Run") return MachinePhase::running;
   if (name == "Jog") return MachinePhase::jogging;
   if (name == "Hold") return detail == 0 ? MachinePhase::paused : MachinePhase::pausing;
@@ -61,6 +62,7 @@ std::optional<GrblReport> read_grbl_report(std::string_view line) {
       const auto phase = phase_of(name, report.detail);
       if (!phase) return std::nullopt;
       report.phase = *phase;
+      report.tool_change = name == "Tool";
       first = false;
     } else if (name == "MPos") report.machine_mm = point(value);
     else if (name == "WPos") report.work_mm = point(value);
@@ -71,9 +73,12 @@ std::optional<GrblReport> read_grbl_report(std::string_view line) {
       if (numbers.size() > 1) report.power = numbers[1];
     } else if (name == "Ov") {
       const std::vector<double> n = numbers_between_commas(value);
+      report.spindle_on = report.spindle_on.value_or(false);
       if (n.size() == 3) report.overrides = {static_cast<int>(n[0]), static_cast<int>(n[1]), static_cast<int>(n[2])};
     } else if (name == "A") {
       report.spindle_on = value.find_first_of("SC") != std::string_view::npos;
+    } else if (name == "MPG") {
+      report.pendant = value == "1";
     } else if (name == "Bf") {
       const std::vector<double> n = numbers_between_commas(value);
       if (n.size() == 2) report.free_blocks = static_cast<int>(n[0]), report.free_bytes = static_cast<int>(n[1]);

@@ -11,12 +11,14 @@ namespace formwright {
 
 struct GrblReport {
   MachinePhase phase = MachinePhase::unknown;
-  int detail = 0;                                                       // Hold:0 has come to rest, Hold:1 has not
+  int detail = 0;  // Hold:0 has come to rest, Hold:1 has not; grblHAL tells the number behind Alarm
   std::optional<std::array<double, 3>> machine_mm, work_mm, offset_mm;  // offset: machine minus work, sent now and then
   std::optional<double> feed_mm_per_min, power;
   std::optional<std::array<int, 3>> overrides;  // feed, rapid, power in percent
   std::optional<int> free_blocks, free_bytes;
-  bool spindle_on = false;  // A:S or A:C; reported with the overrides only
+  std::optional<bool> spindle_on;  // A:S or A:C; none where the report has neither A nor overrides
+  bool tool_change = false;        // grblHAL waits for a person to change the tool (M6), and reads no lines
+  std::optional<bool> pendant;     // MPG: a hand-held control has the machine
 };
 
 /// None for anything that is not a whole report.

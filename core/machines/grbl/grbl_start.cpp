@@ -29,7 +29,7 @@ void GrblDriver::check_reach(const GcodeBounds& bounds) const {
     if (length > bed[axis] + 1e-3)
       refuse("job", "The job is " + decimal(length) + " mm long in " + name + ", the machine reaches " +
                         decimal(bed[axis]) + " mm: make it smaller or turn it.");
-    if (!homes() || !axes_known_[axis] || !offset_mm_) continue;
+    if (!homes_axis(axis) || !axes_known_[axis] || !offset_mm_) continue;
     const double low = reach_low(static_cast<int>(axis)), high = low + bed[axis], offset = (*offset_mm_)[axis];
     if (bounds.low_mm[axis] + offset < low - 1e-3 || bounds.high_mm[axis] + offset > high + 1e-3)
       refuse("job", "The job would leave the bed in " + name + ": from the origin it may go from " +
@@ -79,19 +79,20 @@ std::vector<std::string> GrblDriver::lines_back_to(int index) const {
 std::string GrblDriver::unknown_place() const {
   for (std::size_t axis = 0; axis < 2; ++axis)
     if (moves_axis_[axis] && !axes_known_[axis])
-      return homes() ? "Where the head stands is unknown: home the machine first."
-                     : "Where the head stands is unknown: jog to the material's corner and set the origin first.";
+      return homes_axis(axis)
+                 ? "Where the head stands is unknown: home the machine first."
+                 : "Where the head stands is unknown: jog to the material's corner and set the origin first.";
   if (moves_axis_[2] && !axes_known_[2])
-    return homes() ? "How high the tool stands is unknown: home the machine first."
-                   : "Set z: the job moves up and down, and where z is 0 is unknown. Jog the tool down to the "
-                     "material's top and set z there.";
+    return homes_axis(2) ? "How high the tool stands is unknown: home the machine first."
+                         : "Set z: the job moves up and down, and where z is 0 is unknown. Jog the tool down to the "
+                           "material's top and set z there.";
   return "";
 }
 
 /// What the machine's own settings and state would make of the job.
 void GrblDriver::check_settings() const {
   const double mode = setting(32, is_laser() ? 1 : 0), high = setting(30, 1000), low = setting(31, 0);
-  if (program_.fires() && is_laser() && mode == 0)
+  if (program_.fires() && is_laser() && mode != 1)
     refuse("start",
            "Laser mode is off in the machine, so the beam would stay on at every corner and travel: send $32=1 first.");
   if (program_.fires() && !is_laser() && mode != 0)
@@ -103,6 +104,11 @@ void GrblDriver::check_settings() const {
     refuse("start", "Line " + std::to_string(power_wanted_.max_power_line) + " asks for S" +
                         decimal(power_wanted_.max_power) + ", and the machine's full power is S" + decimal(high) +
                         " ($30): set the profile's full power to " + decimal(high) + " and make the job anew.");
+  if (const std::string sentence = machine_.keeps_beam_on(); program_.fires() && is_laser() && !sentence.empty())
+    refuse("start", sentence);
+  if (program_.fires() && is_laser() && hold_keeps_beam())
+    refuse("start",
+           "The machine keeps the beam on when it is paused ($63), and the job burns at rest: send $63=3 first.");
   if (const std::string sentence = machine_.runs_by_itself(); !sentence.empty()) refuse("start", sentence);
   if (const std::string sentence = machine_.misplaces(); !sentence.empty()) refuse("start", sentence);
 }
@@ -134,7 +140,7 @@ void GrblDriver::start(const Json& command, double now_s) {
   select_job_system();
   check_reach(program_.bounds());
   if (z_here && !machine_mm_) refuse("z", "The machine has not reported where its tool stands: try again in a second.");
-  const bool z_known = homes() && axes_known_[2] && (z_here || offset_mm_);
+  const bool z_known = homes_axis(2) && axes_known_[2] && (z_here || offset_mm_);
   if (const double travel_mm = setting(132, 0); travel_mm > 0)
     require_z_reach(
         program_.bounds(), travel_mm,
@@ -163,7 +169,9 @@ Json GrblDriver::warnings() const {
   if (connection_ != MachineConnection::ready) return sentences;
   for (const std::string& sentence : {machine_.runs_by_itself(), machine_.misplaces()})
     if (!sentence.empty()) sentences.push_back(sentence);
-  if (is_laser() && setting(32, 1) == 0)
+  if (const std::string sentence = machine_.keeps_beam_on(); is_laser() && !sentence.empty())
+    sentences.push_back(sentence);
+  if (is_laser() && setting(32, 1) != 1)
     sentences.push_back("Laser mode is off in the machine: send $32=1 before a job.");
   if (program_.line_count() == 0 || !program_.fires()) return sentences;
   if (is_laser() && power_wanted_.constant && dynamic_power())

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "machines/grbl/grbl_words.h"
 
-#include <map>
-
 namespace formwright {
+namespace {
 
-GrblWords grbl_alarm(int code) {
+const std::map<int, GrblWords>& common_alarms() {
   static const std::map<int, GrblWords> words = {
       {1,
        {"A limit switch was hit: the machine stopped at once and no longer knows where it is.",
@@ -24,20 +23,11 @@ GrblWords grbl_alarm(int code) {
       {9, {"Homing found no limit switch.", "Check the switches and the travel ($130 to $132), and home again."}},
       {10,
        {"Homing of an axis with two motors found only one of its two switches.",
-        "Check both switches of that axis and home again."}},
-      {11, {"The machine must be homed before anything else.", "Home it."}},
-      {12, {"A limit switch is pressed.", "Move the head off the switch, then home."}},
-      {13, {"The emergency stop is pressed.", "Release it when it is safe, then home."}},
-      {14, {"The machine must be homed after the emergency stop.", "Home it."}},
-      {17, {"A motor's driver reports a fault.", "Switch the machine off, let it cool, check the motors, then home."}}};
-  const auto found = words.find(code);
-  if (found != words.end()) return found->second;
-  if (code == 0) return {"The machine is locked.", "Home it, or unlock it where it has no switches."};
-  return {"The machine raised alarm " + std::to_string(code) + ".",
-          "Look it up in the controller's manual; home before going on."};
+        "Check both switches of that axis and home again."}}};
+  return words;
 }
 
-std::string grbl_error(int code) {
+const std::map<int, std::string>& common_errors() {
   static const std::map<int, std::string> words = {{1, "A number came without its G-code letter."},
                                                    {2, "A number was missing or malformed."},
                                                    {3, "The machine does not know this $ command."},
@@ -73,11 +63,38 @@ std::string grbl_error(int code) {
                                                    {35, "The arc's centre is missing."},
                                                    {36, "The line has values that nothing uses."},
                                                    {37, "The tool length offset is not set up."},
-                                                   {38, "The tool number is too high."},
-                                                   {60, "The memory card could not be read."},
-                                                   {79, "The machine must be homed first."}};
-  const auto found = words.find(code);
-  return found != words.end() ? found->second : "The machine refused the line with error " + std::to_string(code) + ".";
+                                                   {38, "The tool number is too high."}};
+  return words;
+}
+
+}  // namespace
+
+GrblWords grbl_alarm(int code, GrblFirmware firmware) {
+  if (code == 0) return {"The machine is locked.", "Home it, or unlock it where it has no switches."};
+  const auto own = firmware == GrblFirmware::grblhal   ? grblhal_alarm(code)
+                   : firmware == GrblFirmware::fluidnc ? fluidnc_alarm(code)
+                                                       : std::nullopt;
+  if (own) return *own;
+  const auto found = common_alarms().find(code);
+  if (found != common_alarms().end()) return found->second;
+  return {"The machine raised alarm " + std::to_string(code) + ".",
+          "Look it up in the controller's manual; home before going on."};
+}
+
+std::string grbl_error(int code, GrblFirmware firmware) {
+  const auto own = firmware == GrblFirmware::grblhal   ? grblhal_error(code)
+                   : firmware == GrblFirmware::fluidnc ? fluidnc_error(code)
+                                                       : std::nullopt;
+  if (own) return *own;
+  const auto found = common_errors().find(code);
+  return found != common_errors().end() ? found->second
+                                        : "The machine refused the line with error " + std::to_string(code) + ".";
+}
+
+bool waits_for_reset(int alarm, GrblFirmware firmware) {
+  // grblHAL alarms.h alarm_is_critical, FluidNC Protocol.cpp protocol_do_alarm; 1 and 2 are reset at once.
+  return (firmware == GrblFirmware::grblhal && (alarm == 10 || alarm == 17 || alarm == 20)) ||
+         (firmware == GrblFirmware::fluidnc && alarm == 13);
 }
 
 }  // namespace formwright

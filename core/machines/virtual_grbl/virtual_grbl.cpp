@@ -7,6 +7,7 @@ namespace formwright {
 namespace {
 
 constexpr double step_s = 1e-3;
+constexpr double forgets_reset_s = 0.02;
 
 }  // namespace
 
@@ -47,6 +48,7 @@ VirtualGrbl::VirtualGrbl(const VirtualGrblOptions& options) : options_(options) 
                {131, options.travel_y_mm},
                {132, options.travel_z_mm}};
   for (const int system : {28, 30, 54, 55, 56, 57, 58, 59}) systems_[system] = {0, 0, 0};
+  if (options_.grblhal) become_grblhal();
 }
 
 VirtualGrbl::Point VirtualGrbl::position_mm() const {
@@ -66,6 +68,7 @@ void VirtualGrbl::open(double now_s) {
 
 void VirtualGrbl::boot(double now_s) {
   state_ = "Boot";
+  homed_ = false;
   boots_at_s_ = now_s + options_.boot_s;
   rx_.clear();
   planner_.clear();
@@ -83,6 +86,8 @@ void VirtualGrbl::boot(double now_s) {
 }
 
 void VirtualGrbl::reset() {
+  // grblHAL protocol.c protocol_exec_rt_system: a reset that comes before it waits for one is forgotten.
+  if (options_.grblhal && dead_ && time_s_ - alarm_at_s_ < forgets_reset_s) return;
   const bool moving =
       state_ == "Run" || state_ == "Jog" || state_ == "Home" || (state_ == "Hold" && speed_mm_per_s_ > 0);
   const bool homing = state_ == "Home", was_alarm = state_ == "Alarm";
@@ -100,9 +105,14 @@ void VirtualGrbl::reset() {
   dwell_left_s_ = homes_at_s_ = -1;
   last_error_ = offset_reports_ = override_reports_ = 0;
   overrides_ = {100, 100, 100};
+  homed_ = homed_ && !moving;
   if (moving) output_ += homing ? "ALARM:6\r\n" : "ALARM:3\r\n";
-  output_ += "\r\nGrbl 1.1h ['$' for help]\r\n";
-  if (moving || was_alarm || locked_) {
+  keeps_printable_ = false;
+  output_ += options_.grblhal ? "\r\nGrblHAL 1.1f ['$' or '$HELP' for help]\r\n" : "\r\nGrbl 1.1h ['$' for help]\r\n";
+  if (homing_required()) {
+    state_ = "Alarm", alarm_ = 11;
+    output_ += "ALARM:11\r\n[MSG:Homing cycle required]\r\n";
+  } else if (moving || was_alarm || locked_) {
     state_ = "Alarm";
     output_ += "[MSG:'$H'|'$X' to unlock]\r\n";
   } else {
@@ -114,6 +124,9 @@ void VirtualGrbl::reset() {
 void VirtualGrbl::alarm(int code) {
   output_ += "ALARM:" + std::to_string(code) + "\r\n";
   state_ = "Alarm";
+  alarm_ = code;
+  alarm_at_s_ = time_s_;
+  homed_ = homed_ && code != 1;
   set_spindle(5, 0);
   beam_ = false;
   speed_mm_per_s_ = 0;
@@ -133,9 +146,12 @@ void VirtualGrbl::alarm(int code) {
 void VirtualGrbl::receive(std::string_view bytes, double now_s) {
   advance(now_s);
   for (const char c : bytes) {
-    const auto byte = static_cast<unsigned char>(c);
+    auto byte = static_cast<unsigned char>(c);
     if (state_ == "Off" || state_ == "Boot") continue;  // the boot loader swallows it
-    if (byte == '?' || byte == '!' || byte == '~' || byte == 0x18 || byte >= 0x80) real_time(byte);
+    if (options_.grblhal) byte = heard_as(byte);
+    const bool printable = byte == '?' || byte == '!' || byte == '~';
+    const bool text = keeps_printable_ && printable && byte == static_cast<unsigned char>(c);
+    if (!text && (printable || byte == 0x18 || byte >= 0x80)) real_time(byte);
     else if (now_s < deaf_until_s_) ++deaf_;
     else if (rx_.size() >= static_cast<std::size_t>(options_.rx_bytes)) ++overrun_;
     else rx_ += c;
@@ -144,6 +160,7 @@ void VirtualGrbl::receive(std::string_view bytes, double now_s) {
 
 void VirtualGrbl::real_time(unsigned char c) {
   if (c == 0x18) return reset();
+  if (options_.grblhal && c == '?') return report();  // locked and homing, too
   if (dead_ || state_ == "Home") return;
   if (state_ == "Sleep" && c != '?') return;
   const auto change = [&](int& percent, int to, int high) {
@@ -161,9 +178,11 @@ void VirtualGrbl::real_time(unsigned char c) {
       else if (state_ == "Idle") state_ = "Hold", hold_is_complete();
       return;
     case '~':
+      if (state_ == "Tool") state_ = "Idle";
       if (state_ == "Hold" && speed_mm_per_s_ == 0) state_ = planner_.empty() ? "Idle" : "Run";
       return;
     case 0x85:
+      if (options_.grblhal) cancel_unread_lines();
       if (state_ == "Jog") jog_cancelled_ = true;
       return;
     case 0x90: return change(feed, 100, 200);
@@ -193,6 +212,8 @@ void VirtualGrbl::step(double dt_s) {
     if (time_s_ < boots_at_s_) return;
     state_ = "Idle";
     locked_ = settings_[22] != 0;
+    if (options_.grblhal && (static_cast<int>(settings_[22]) & 4) == 0) locked_ = false;
+    alarm_ = 0;
     reset();
     return;
   }
@@ -203,6 +224,7 @@ void VirtualGrbl::step(double dt_s) {
     planned_mm_ = parsed_mm_ = counted_mm_;
     shift_mm_ = {0, 0, 0};
     locked_ = false;
+    homed_ = true;
     state_ = "Idle";
   }
   move(dt_s);
@@ -210,7 +232,9 @@ void VirtualGrbl::step(double dt_s) {
   run_steps();
   // A hold keeps the main loop, so that no line is read (protocol.c protocol_exec_rt_suspend).
   for (int lines = 0; lines < 4 && !in_line_ && startup_left_.empty() && !dead_; ++lines) {
-    if (state_ == "Hold" || state_ == "Home" || state_ == "Sleep" || rx_.find('\n') == std::string::npos) break;
+    if (state_ == "Hold" || state_ == "Home" || state_ == "Sleep" || state_ == "Tool" ||
+        rx_.find('\n') == std::string::npos)
+      break;
     read_line();
     run_steps();
   }

@@ -29,8 +29,9 @@ struct VirtualGrblOptions {
   double acceleration_mm_per_s2 = 500;
   double rapid_mm_per_s = 150;
   bool resets_on_open = true;
-  int planner_blocks = 15, rx_bytes = 128;  // grblHAL: 35 and 1024
+  int planner_blocks = 15, rx_bytes = 128;
   bool error_latch = false;  // grblHAL protocol.c: behind a refused line every line of G-code is answered by its error
+  bool grblhal = false;      // speaks and acts as grblHAL, with the latch, 100 blocks and 1024 bytes
 };
 
 class VirtualGrbl {
@@ -93,6 +94,14 @@ class VirtualGrbl {
   };
   struct Words;                        // of one line: virtual_grbl_gcode.cpp
   using Step = std::function<bool()>;  // true when it is done
+
+  // virtual_grbl_hal.cpp: what grblHAL does otherwise
+  void become_grblhal();
+  unsigned char heard_as(unsigned char c);
+  bool homing_required() const { return options_.grblhal && !homed_ && (static_cast<int>(settings_.at(22)) & 4) != 0; }
+  void cancel_unread_lines();
+  void report_build();
+  void then_change_tool();
 
   // virtual_grbl.cpp
   void boot(double now_s);
@@ -169,6 +178,10 @@ class VirtualGrbl {
   double time_s_ = 0, speed_mm_per_s_ = 0, boots_at_s_ = -1, deaf_until_s_ = -1, dwell_left_s_ = -1, homes_at_s_ = -1;
   double output_power_ = 0, reported_power_ = 0;
   int output_spindle_ = 5;
+  bool homed_ = false;            // since it was switched on, and no step was lost
+  bool keeps_printable_ = false;  // grblHAL: in a $ line ? ! ~ are text, unless $39
+  double alarm_at_s_ = -1;
+  int alarm_ = 0;
   bool beam_ = false, locked_ = false, dead_ = false, jog_cancelled_ = false, follows_speed_ = false;
   std::array<int, 3> overrides_{100, 100, 100};
   std::pair<std::string, int> refused_line_{"", 0};

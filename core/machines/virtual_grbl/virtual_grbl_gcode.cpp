@@ -57,6 +57,7 @@ int VirtualGrbl::act_on_gcode(const std::string& line, bool is_jog) {
   modes_ = kept;
   if (motion) parsed_mm_ = words.target_mm;
   then_non_modal(words, block);
+  if (words.tool_change) then_change_tool();
   if (flow != 0) then_end_program(flow);
   return 0;
 }

@@ -39,7 +39,7 @@ void VirtualGrbl::finish_line(int error) {
     answer(error);
     startup_now_.clear();
   }
-  in_line_ = false;
+  in_line_ = keeps_printable_ = false;
 }
 
 int VirtualGrbl::act(const std::string& line) {

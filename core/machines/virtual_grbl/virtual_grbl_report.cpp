@@ -36,6 +36,7 @@ void VirtualGrbl::report() {
   if (!(mask & 1))
     for (std::size_t k = 0; k < 3; ++k) shown[k] -= offset[k];
   std::string state = state_;
+  if (options_.grblhal && state_ == "Alarm" && alarm_ > 0) state += ":" + std::to_string(alarm_);
   if (state_ == "Hold") state += speed_mm_per_s_ > 0 ? ":1" : ":0";
   output_ += "<" + state + (mask & 1 ? "|MPos:" : "|WPos:") + place(shown);
   const auto blocks = static_cast<std::size_t>(options_.planner_blocks);

@@ -18,6 +18,7 @@ int VirtualGrbl::act_on_system_line(const std::string& line) {
     return 0;
   }
   if (line == "$X") {
+    if (homing_required()) return 46;
     if (state_ == "Alarm") {
       output_ += "[MSG:Caution: Unlocked]\r\n";
       locked_ = false;
@@ -39,6 +40,7 @@ int VirtualGrbl::act_on_system_line(const std::string& line) {
   }
   if (!rests) return 8;
   if (line == "$I") {
+    if (options_.grblhal) return report_build(), 0;
     output_ += std::string("[VER:1.1h.20190825:Practice]\r\n[OPT:V") + (options_.origin_low ? "Z" : "") + "," +
                std::to_string(options_.planner_blocks) + "," + std::to_string(options_.rx_bytes) + "]\r\n";
     return 0;

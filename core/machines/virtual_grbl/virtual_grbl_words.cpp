@@ -117,6 +117,10 @@ int VirtualGrbl::read_words(const std::string& line, bool jog, Words& words) con
     if (letter == 'G' || letter == 'M') {
       const int tenths = static_cast<int>(std::lround(value * 10)), number = tenths / 10;
       if (letter == 'M' && tenths % 10 != 0) return 23;
+      if (letter == 'M' && number == 6 && options_.grblhal) {
+        words.tool_change = true;
+        continue;
+      }
       const int group = letter == 'G' ? group_of_g(tenths) : group_of_m(number);
       if (group < 0) return unknown_command(letter, tenths);
       if (letter == 'G' && claims_axes(tenths)) {

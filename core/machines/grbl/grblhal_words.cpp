@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// grblHAL's own numbers (alarms.h, errors.h), in our words.
+#include "machines/grbl/grbl_words.h"
+
+namespace formwright {
+std::optional<GrblWords> grblhal_alarm(int code) {
+  static const std::map<int, GrblWords> words = {
+      {10, {"The emergency stop is pressed.", "Release it when it is safe, then unlock or home."}},
+      {11, {"The machine wants to be homed before anything else.", "Home it."}},
+      {12, {"A limit switch is pressed.", "Move the head off the switch, then unlock or home."}},
+      {13, {"The probe is touched while nothing is probed.", "Take the probe away, then unlock."}},
+      {14,
+       {"The spindle did not reach its speed in time.",
+        "Check the spindle and how much its speed may differ ($340), then unlock."}},
+      {15,
+       {"Homing of an axis with two motors found only one of its two switches.",
+        "Check both switches of that axis and home again."}},
+      {16, {"The board failed the test that it makes when it is switched on.", "Switch it off and on again."}},
+      {17, {"A motor's driver reports a fault.", "Switch the machine off, let it cool, check the motors, then home."}},
+      {18, {"The settings of homing contradict each other.", "Check which axes home when ($44 to $46), then home."}},
+      {19,
+       {"A device on the board's data line (a spindle's drive, mostly) did not answer.",
+        "Check its cable and that it is on, then unlock."}},
+      {20,
+       {"An expansion board with inputs and outputs does not answer.",
+        "Switch the machine off, check that board's cable, then home."}},
+      {21,
+       {"The board cannot read or keep its settings.",
+        "Switch it off and on again; check every setting before the machine moves."}},
+      {22,
+       {"More was sent to the board than it has room for, and some of it was lost.",
+        "Unlock, and start the job again."}}};
+  return word_of(words, code);
+}
+
+std::optional<std::string> grblhal_error(int code) {
+  static const std::map<int, std::string> words = {
+      {18, "The board's reset button or its reset input is on."},
+      {19, "A value that must be above zero is not."},
+      {38, "The tool's number is too high, or the board has no such tool."},
+      {39, "A value is outside of what the command allows."},
+      {40, "The machine waits for a tool change: change the tool and resume first."},
+      {41, "The move needs a spindle that turns."},
+      {42, "The plane does not suit the command: threads need G18."},
+      {43, "The feed rate is higher than the machine's fastest."},
+      {44, "The spindle speed is outside of the machine's range."},
+      {45, "A limit switch is pressed: home, or move the head off it by hand."},
+      {46, "The machine wants to be homed before it is unlocked: home it."},
+      {47, "The machine does not know which tool is in: say so by M61 with Q."},
+      {48, "Two values of the line contradict each other."},
+      {49, "The board failed its test at start: switch it off and on again."},
+      {50, "The emergency stop is pressed: release it when it is safe, then home."},
+      {51, "A motor's driver reports a fault: switch the machine off and check the motors."},
+      {52, "The setting's value is outside of what the board allows."},
+      {53, "This board does not have that setting, or needs another one first."},
+      {54, "The height to go back to lies below the bottom of the hole."},
+      {55, "Two axes that square themselves cannot home at the same time ($44 to $46)."},
+      {56, "This work coordinate system is locked ($486)."},
+      {57, "A percent sign stands where no program begins or ends."},
+      {58, "The board has no such input or output."},
+      {60, "The memory card could not be read."},
+      {61, "The file on the board could not be read."},
+      {62, "The folder on the board could not be opened."},
+      {63, "The board has no such folder."},
+      {64, "The board has no memory card in use: put one in and mount it."},
+      {65, "The board's own file store is not in use."},
+      {66, "The board's file store can only be read."},
+      {70, "The board's Bluetooth could not be started."},
+      {71, "The line calculates with an operation that the board does not know."},
+      {72, "The line divides by zero."},
+      {73, "A function in the line got a number outside of what it takes."},
+      {74, "A function in the line got a value that it does not take."},
+      {75, "A calculation in the line is malformed."},
+      {76, "A calculation in the line has no finite result."},
+      {77, "The board wants a password first."},
+      {78, "The board does not allow this."},
+      {79, "An emergency stop or a fault is still active: end it, then unlock or home."},
+      {80, "Jumps and loops work only in programs that lie on the board."},
+      {81, "A jump or loop in the line is malformed."},
+      {82, "Jumps or loops are nested too deeply for the board."},
+      {83, "The board has no memory left for a jump or loop."},
+      {84, "The file on the board could not be opened."},
+      {85, "The board's file store could not be formatted."},
+      {86, "That input or output cannot be used for this."},
+      {87, "A tool is in the spindle already."},
+      {88, "No tool is in the spindle."},
+      {89, "The file on the board could not be deleted."},
+      {90, "The cutter's radius is compensated already: end that by G40 first."},
+      {91, "This cannot be done while the cutter's radius is compensated: send G40 first."},
+      {92, "The cutter's radius cannot be compensated along this move."},
+      {253, "A program on the board ended with an error of its own."}};
+  return word_of(words, code);
+}
+
+}  // namespace formwright

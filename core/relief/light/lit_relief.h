@@ -18,8 +18,8 @@ struct LitRelief {
 
 /// Nodes about `pitch_mm` apart, from edge to edge of a plate whose middle is the origin, each where a ray straight on
 /// meets `solid`; at the bottom of its box where none does. Normals are from central differences, but
-/// one-sided beside a wall, so that no edge is smeared over the flat parts next to it. `clearance_mm`: see SurfacePoints.
-/// Throws Error: invalid_input "light_pixel_mm" for more than a million nodes; cancelled.
+/// one-sided beside a wall, so that no edge is smeared over the flat parts next to it. `clearance_mm`: see
+/// SurfacePoints. Throws Error: invalid_input "light_pixel_mm" for more than a million nodes; cancelled.
 LitRelief make_lit_relief(const LitObject& solid, PlateSize plate, double pitch_mm, double clearance_mm,
                           Context& context);
 

@@ -67,9 +67,9 @@ SceneLight LitScene::lit_by(const LightSamples& light, Context& context) const {
 }
 
 double LitScene::memory_mb() const {
-  constexpr double bytes_a_node = 48, bytes_a_pixel = 60, bytes_a_tree = 3e7;
+  constexpr double bytes_a_node = 48, bytes_a_pixel = 70;
   return 1e-6 * (bytes_a_node * static_cast<double>(relief_.nodes.place.rows()) +
-                 bytes_a_pixel * static_cast<double>(view_.pixels()) + bytes_a_tree);
+                 bytes_a_pixel * static_cast<double>(view_.pixels()));
 }
 
 std::optional<double> exposure(std::vector<double> values) {

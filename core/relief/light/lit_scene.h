@@ -37,7 +37,7 @@ class LitScene {
   const PictureView& view() const { return view_; }
   const SeenRelief& seen_relief() const { return seen_relief_; }
   const SeenModel& seen_model() const { return seen_model_; }
-  double memory_mb() const;
+  double memory_mb() const;  // without the objects, which scenes share
 
  private:
   LitObject solid_, model_;

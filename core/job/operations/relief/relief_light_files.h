@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// The files of a lit relief: pictures, its front with the light on it, a lithophane.
+#include "job/operations/relief/relief_light_scene.h"
+#include "relief/light/lithophane.h"
+
+namespace formwright {
+
+/// `light` times `exposure` as sRGB greys, 1 being white; clear where nothing is covered. Rows from the bottom, as
+/// pixels of a view are.
+Bytes light_picture(const PictureView& view, const std::vector<char>& covered, const std::vector<double>& light,
+                    double exposure, Context& context);
+
+/// The solid's front in the axes of relief.ply, with the column "brightness", 0 to 1, linear.
+Bytes lit_front(const KeptLight& kept, double width_mm, const std::vector<double>& light, double exposure,
+                Context& context);
+
+/// 16 bits, white is the thickest. Where the model is not seen, the plate is of middle brightness.
+Bytes lithophane_picture(const PictureView& view, const SeenModel& model, const std::vector<double>& light,
+                         double exposure, const Lithophane& plate, Context& context);
+
+}  // namespace formwright

@@ -17,6 +17,7 @@ import { RoomSession } from '../../shared/session/room_session';
 import type { Services } from '../../shared/session/services';
 import type { ShadedMesh } from '../../shared/panels/shaded_mesh';
 import type { MeshData, Viewpoint } from '../../view';
+import { ReliefLight } from './light/relief_light';
 import { baseOf, parametersOf } from './meshes';
 import type { ReliefDocument } from './relief_document';
 import { baseInputs, currentResult, relief, takeBase } from './relief_document';
@@ -59,12 +60,14 @@ export class ReliefSession extends RoomSession<ReliefDocument> {
     read: (result) => this.#readResult(result),
   });
   readonly shown = this.previews.shown;
+  readonly light = new ReliefLight(this);
   readonly #previewed = signal<Measured | null>(null);
   readonly #previewMemory_mb = signal(0);
 
   constructor(services: Services) {
     super(services, relief);
     this.previews.startFollowing();
+    this.light.startFollowing();
   }
 
   openFiles(files: readonly File[]): Promise<boolean> {

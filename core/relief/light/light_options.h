@@ -50,6 +50,10 @@ struct ReliefLightOptions : ReliefOptions {
               "light", &ReliefLightOptions::light, "Light",
               "What shines on the relief: the sun at a place and time or from given angles, an overcast or an evenly bright sky, a window, or a bare strobe.")
               .group("Light"),
+          parameter("hour", &ReliefLightOptions::hour, "Hour", Unit{"h"}, 0, 24,
+                    "Time of the day on the clock of the place. 13.5 is half past one in the afternoon.")
+              .group("Light")
+              .only_with("light", "sun"),
           parameter("wall_facing_deg", &ReliefLightOptions::wall_facing_deg, "Wall faces", unit::degrees, 0, 360,
                     "Compass direction into which the wall looks. 0 is north, 90 east, 180 south, 270 west.")
               .group("Light")
@@ -64,10 +68,6 @@ struct ReliefLightOptions : ReliefOptions {
               .only_with("light", "sun"),
           parameter("date", &ReliefLightOptions::date, "Date",
                     "Day of the year as year-month-day, such as 2026-06-21, from 1901 to 2099.")
-              .group("Light")
-              .only_with("light", "sun"),
-          parameter("hour", &ReliefLightOptions::hour, "Hour", Unit{"h"}, 0, 24,
-                    "Time of the day on the clock of the place. 13.5 is half past one in the afternoon.")
               .group("Light")
               .only_with("light", "sun"),
           parameter(

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "formats/container/zip.h"
 #include "formats/mesh_io.h"
 #include "formats/png/png16.h"
 #include "imaging/picture/light.h"
@@ -15,6 +16,7 @@ namespace {
 constexpr double lithophane_background = 0.5;
 constexpr double pixels_of_16_bits = 65535;
 constexpr double mm_a_metre = 1000;
+constexpr int walk_step_deg = 5, walk_end_deg = 60;
 
 /// Pictures start at the top, pixels of a view at the bottom.
 std::size_t from_bottom(const PictureView& view, int x, int y) {
@@ -36,6 +38,28 @@ Bytes light_picture(const PictureView& view, const std::vector<char>& covered, c
       image.at(x, y) = {grey, grey, grey, 255};
     }
   return write_png(image, static_cast<int>(std::lround(mm_a_metre / view.pixel_mm)), context);
+}
+
+Bytes picture_of_relief(const KeptLight& kept, const PictureView& view, const std::vector<double>& light,
+                        double exposure, Context& context) {
+  const LitScene& scene = *kept.scene;
+  const SeenRelief seen = see_relief(view, scene.solid(), context);
+  return light_picture(view, seen.covered, seen.values(scene.relief(), light), exposure, context);
+}
+
+Bytes walk_past(const KeptLight& kept, const std::vector<double>& light, double exposure, Context& context) {
+  ZipWriter zip;
+  int number = 0;
+  for (int angle = -walk_end_deg; angle <= walk_end_deg; angle += walk_step_deg) {
+    const PictureView view = picture_of_plate(kept.plate, kept.scene->view().pixel_mm, kept.distance_mm, angle);
+    const std::string place = angle == 0  ? "front"
+                              : angle < 0 ? "left_" + std::to_string(-angle) + "_deg"
+                                          : "right_" + std::to_string(angle) + "_deg";
+    ++number;
+    const std::string name = (number < 10 ? "0" : "") + std::to_string(number) + "_" + place + ".png";
+    zip.add_stored(name, picture_of_relief(kept, view, light, exposure, context));
+  }
+  return zip.finish();
 }
 
 Bytes lit_front(const KeptLight& kept, double width_mm, const std::vector<double>& light, double exposure,

@@ -11,6 +11,13 @@ namespace formwright {
 Bytes light_picture(const PictureView& view, const std::vector<char>& covered, const std::vector<double>& light,
                     double exposure, Context& context);
 
+/// The relief through another view of the same plate, as light_picture.
+Bytes picture_of_relief(const KeptLight& kept, const PictureView& view, const std::vector<double>& light,
+                        double exposure, Context& context);
+
+/// Pictures from left to right, 5 degrees apart up to 60 on either side, as a zip: "01_left_60_deg.png" and so on.
+Bytes walk_past(const KeptLight& kept, const std::vector<double>& light, double exposure, Context& context);
+
 /// The solid's front in the axes of relief.ply, with the column "brightness", 0 to 1, linear.
 Bytes lit_front(const KeptLight& kept, double width_mm, const std::vector<double>& light, double exposure,
                 Context& context);

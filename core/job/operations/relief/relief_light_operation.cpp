@@ -17,6 +17,9 @@ std::vector<OutputInfo> light_outputs() {
        "The model itself in the same light with the same exposure, with the shadows that it casts.", true},
       {"light.ply", "application/x-ply", "PLY with the light",
        "The front of the solid as a mesh, with the brightness (0 to 1, linear) of every point.", true},
+      {"walk_past.zip", "application/zip", "Walking past",
+       "Pictures of the relief in this light from left to right, 5° apart up to 60° on either side, as when one walks past.",
+       false},
       {"lithophane.png", "image/png", "Lithophane",
        "Height map with 16-bit grey levels of a plate that shows the lit model when light comes through it; white is the thickest. Its scale is in the report.",
        false}};
@@ -125,22 +128,21 @@ OperationResult run_relief_light(const OperationCall& call, const ReliefLightOpt
       if (info.name == name) result.outputs.push_back(make_output(info, make()));
     context.check_cancelled();
   };
-  const auto of_relief = [&](const PictureView& view, const SeenRelief& seen) {
-    return light_picture(view, seen.covered, seen.values(scene.relief(), light.all.relief.lit), exposure, context);
-  };
-  add_output("light.png", [&] { return of_relief(scene.view(), scene.seen_relief()); });
+  const std::vector<double>& on_relief = light.all.relief.lit;
+  add_output("light.png", [&] { return picture_of_relief(*kept, scene.view(), on_relief, exposure, context); });
   add_output("light_aside.png", [&] {
     const PictureView aside =
         picture_of_plate(kept->plate, scene.view().pixel_mm, kept->distance_mm, options.viewer_aside_deg);
-    return of_relief(aside, see_relief(aside, scene.solid(), context));
+    return picture_of_relief(*kept, aside, on_relief, exposure, context);
   });
+  add_output("walk_past.zip", [&] { return walk_past(*kept, on_relief, exposure, context); });
   const SeenModel& model = scene.seen_model();
   add_output("light_model.png", [&] {
     std::vector<char> covered(model.place_of_pixel.size());
     for (std::size_t p = 0; p < covered.size(); ++p) covered[p] = model.place_of_pixel[p] >= 0;
     return light_picture(scene.view(), covered, model.values(light.all.model.lit), exposure, context);
   });
-  add_output("light.ply", [&] { return lit_front(*kept, options.width_mm, light.all.relief.lit, exposure, context); });
+  add_output("light.ply", [&] { return lit_front(*kept, options.width_mm, on_relief, exposure, context); });
   add_output("lithophane.png", [&] {
     const Lithophane plate{options.lithophane_min_mm, options.lithophane_max_mm,
                            absorption_per_mm(options.lithophane_transmission_percent / 100)};

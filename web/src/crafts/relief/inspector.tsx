@@ -56,7 +56,7 @@ export function Inspector(props: InspectorProps) {
     <>
       <div class="inspector-scroll" tabIndex={-1}>
         <ModelRow session={session} picture={picture} onReplace={onReplace} />
-        {mode.value === 'light' ? <LightPanel session={session} viewport={viewport} /> : null}
+        {mode.value === 'light' ? <LightPanel session={session} /> : null}
         <ParameterPanel
           operation={shown}
           parameters={parameters}

@@ -36,8 +36,8 @@ const modes: readonly { value: ReliefMode; label: string; short?: string }[] = [
   { value: 'swipe', label: 'Swipe' },
   { value: 'relief', label: 'Relief' },
   { value: 'original', label: 'Original' },
-  { value: 'error', label: 'Shading difference', short: 'Shading' },
-  { value: 'light', label: 'In real light', short: 'In light' },
+  { value: 'error', label: 'Shading difference' },
+  { value: 'light', label: 'In real light', short: 'Light' },
 ];
 
 export interface ViewportPanelProps {
@@ -56,6 +56,7 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
   const foot = useRef<HTMLDivElement>(null);
   /** The view says itself why it cannot draw; what belongs to a picture goes away. */
   const drawing = useSignal(true);
+  const isNarrow = useSignal(narrow());
 
   useEffect(() => {
     if (container.current === null) return undefined;
@@ -90,7 +91,10 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
         viewport.setResting(session.previews.running.value || session.activity.value.kind !== 'idle'),
       ),
     ];
-    const resize = new ResizeObserver(() => viewport.setFreeRectangle(freeRectangle(foot.current)));
+    const resize = new ResizeObserver(() => {
+      isNarrow.value = narrow();
+      viewport.setFreeRectangle(freeRectangle(foot.current));
+    });
     resize.observe(container.current);
     if (foot.current) resize.observe(foot.current);
     onViewport(viewport);
@@ -108,7 +112,7 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
   const shown = session.shown.value;
   const options = modes.map(({ value, label, short }) => ({
     value,
-    label: narrow() ? (short ?? label) : label,
+    label: isNarrow.value ? (short ?? label) : label,
     disabledReason:
       shown === null && value !== 'original' ? 'Available when the first preview is ready' : undefined,
   }));

@@ -1,43 +1,36 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The light in which the relief is shown: its controls, the day's hours, the pictures to take along.
-import { useSignal } from '@preact/signals';
 import { useId } from 'preact/hooks';
 import { Button, formatFixed, Icon, withUnit } from '../../../ui';
-import type { Viewport } from '../../../view';
 import { ParameterPanel } from '../../../shared/panels/parameters/parameter_panel';
 import { inForce } from '../../../shared/session/craft_document';
 import { figure } from '../../../shared/session/report';
-import { download, safeFileName } from '../../../shared/session/download';
 import type { ReliefSession } from '../relief_session';
 import { DayCurve } from './day_curve';
 import { clock, dayOf, lightControls } from './light_values';
 import './light_panel.css';
-import { walkPast } from './walk_past';
 
-export function LightPanel({
-  session,
-  viewport,
-}: {
-  readonly session: ReliefSession;
-  readonly viewport: Viewport | null;
-}) {
+export function LightPanel({ session }: { readonly session: ReliefSession }) {
   const { light } = session;
   const operation = light.operation.value;
   if (operation === null) return null;
   const values = session.document.value.light;
   return (
-    <ParameterPanel
-      operation={lightControls(operation, values)}
-      parameters={values}
-      errors={light.errors.value}
-      onPreview={(name, value) => light.preview(name, value)}
-      onCommit={() => session.services.projects.commit()}
-      groupHead={{ Light: <LightHead session={session} viewport={viewport} /> }}
-    />
+    <>
+      <ParameterPanel
+        operation={lightControls(operation, values)}
+        parameters={values}
+        errors={light.errors.value}
+        onPreview={(name, value) => light.preview(name, value)}
+        onCommit={() => session.services.projects.commit()}
+        groupHead={{ Light: <LightHead session={session} /> }}
+      />
+      <LightFiles session={session} />
+    </>
   );
 }
 
-function LightHead({ session, viewport }: { session: ReliefSession; viewport: Viewport | null }) {
+function LightHead({ session }: { session: ReliefSession }) {
   const { light } = session;
   const operation = light.operation.value;
   const lit = light.lit.value;
@@ -98,7 +91,6 @@ function LightHead({ session, viewport }: { session: ReliefSession; viewport: Vi
           ) : null}
         </div>
       ) : null}
-      <LightFiles session={session} viewport={viewport} />
     </>
   );
 }
@@ -124,9 +116,8 @@ function LightWords({ session }: { session: ReliefSession }) {
   );
 }
 
-function LightFiles({ session, viewport }: { session: ReliefSession; viewport: Viewport | null }) {
+function LightFiles({ session }: { session: ReliefSession }) {
   const { light } = session;
-  const walking = useSignal(false);
   const ready = light.lit.value !== null && !light.running.value;
   const reason = ready
     ? session.activity.value.kind === 'idle'
@@ -139,28 +130,14 @@ function LightFiles({ session, viewport }: { session: ReliefSession; viewport: V
     </Button>
   );
   return (
-    <div class="row wrap" role="group" aria-label="Pictures in this light">
-      {save('light.png', 'Picture')}
-      {save('light_aside.png', 'From aside')}
-      <Button
-        size="small"
-        icon="download"
-        disabledReason={walking.value ? 'The pictures are being taken' : reason}
-        title="Pictures from left to right as when walking past, as one zip file"
-        onClick={() => {
-          if (viewport === null) return;
-          walking.value = true;
-          void walkPast(viewport)
-            .then((zip) =>
-              download(zip, `${safeFileName(session.title)}-walking-past.zip`, 'application/zip'),
-            )
-            .catch((thrown: unknown) => (light.problem.value = String(thrown)))
-            .finally(() => (walking.value = false));
-        }}
-      >
-        Walking past
-      </Button>
-      {save('lithophane.png', 'Lithophane')}
-    </div>
+    <section class="section" aria-label="Pictures in this light">
+      <h3>Pictures in this light</h3>
+      <div class="row wrap">
+        {save('light.png', 'Picture')}
+        {save('light_aside.png', 'From aside')}
+        {save('walk_past.zip', 'Walking past')}
+        {save('lithophane.png', 'Lithophane')}
+      </div>
+    </section>
   );
 }

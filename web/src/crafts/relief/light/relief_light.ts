@@ -89,7 +89,8 @@ export class ReliefLight {
       async (options: RunOptions) => await bytesOf(await request.backend.run(request.job, options), name),
       (error) => (this.problem.value = error.message),
     );
-    if (bytes) download(bytes, fileName, 'image/png');
+    const declared = this.operation.value?.outputs.find((output) => output.name === name);
+    if (bytes && declared) download(bytes, fileName, declared.media_type);
   }
 
   #request(outputs: readonly string[]): LightRequest | null {

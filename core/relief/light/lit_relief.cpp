@@ -45,7 +45,7 @@ LitRelief make_lit_relief(const LitObject& solid, PlateSize plate, double pitch_
                rows = std::max(2.0, std::ceil(plate.height_mm / pitch_mm - 1e-9) + 1);
   if (!(columns * rows <= max_nodes))
     throw Error(ErrorCode::invalid_input, "light_pixel_mm",
-                "The light would be computed at more than a million points: raise the detail of the light "
+                "The light would be computed at more than a million points: give a larger spacing "
                 "(light_pixel_mm).");
   relief.columns = static_cast<int>(columns);
   relief.rows = static_cast<int>(rows);

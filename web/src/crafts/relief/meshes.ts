@@ -8,7 +8,7 @@ import { figure, vectorOf } from '../../shared/session/report';
 import type { ShadedMesh } from '../../shared/panels/shaded_mesh';
 import { shadingOf } from '../../shared/panels/shaded_mesh';
 import { brightnessMapping } from './light/light_values';
-import type { LitRelief } from './light/relief_light';
+import type { LitRelief } from './shown';
 
 export const errorMapping: ColourMapping = {
   attribute: 'normal_error_deg',

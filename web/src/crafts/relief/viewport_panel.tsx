@@ -11,9 +11,9 @@ import { narrow } from '../../shared/panels/narrow';
 import { figure } from '../../shared/session/report';
 import { originalData, scaled } from '../../shared/panels/shaded_mesh';
 import { brightnessMapping } from './light/light_values';
-import type { LitRelief } from './light/relief_light';
 import { errorMapping, errorOf, litData, plateOf, reliefData, viewpointOf } from './meshes';
-import type { ReliefSession, Shown } from './relief_session';
+import type { ReliefSession } from './relief_session';
+import type { LitRelief, Shown } from './shown';
 
 type ReliefMode = ViewMode | 'light';
 

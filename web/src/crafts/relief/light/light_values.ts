@@ -61,7 +61,7 @@ export function lightParameters(
 export const srgbOf = (linear: Float32Array): Float32Array =>
   linear.map((c) => (c <= 0.0031308 ? 12.92 * c : 1.055 * c ** (1 / 2.4) - 0.055));
 
-export interface HourOfDay {
+interface HourOfDay {
   readonly hour: number;
   readonly similarity: number | null;
   readonly sunOnWall: boolean;

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Keeps the lit relief in step with the relief that is shown and with the light chosen.
+import type { ReadonlySignal } from '@preact/signals';
 import { computed, effect, signal, untracked } from '@preact/signals';
 import type { Backend, RunOptions } from '../../../jobs/backend';
-import type { Job, Json, JsonObject, Report } from '../../../jobs/contract';
+import type { Job, Json, JsonObject } from '../../../jobs/contract';
 import { asJobError, findOperation } from '../../../jobs/contract';
 import { LatestOnly } from '../../../jobs/latest_only';
 import { readPly } from '../../../jobs/mesh_reader';
@@ -10,18 +11,21 @@ import { jsonEqual } from '../../../project/document';
 import { download, safeFileName } from '../../../shared/session/download';
 import { bytesOf } from '../../../shared/session/import_model';
 import { readyWorker } from '../../../shared/session/services';
-import type { ReliefSession, Shown } from '../relief_session';
+import type { Subject } from '../../../shared/session/craft_document';
+import type { RoomSession } from '../../../shared/session/room_session';
+import type { ReliefDocument } from '../relief_document';
+import type { LitRelief, Shown } from '../shown';
 import { lightOperation, lightParameters, setLight, srgbOf } from './light_values';
 
-export interface LitRelief {
-  readonly positions: Float32Array;
-  readonly indices: Uint32Array;
-  /** As a screen shows it, 0 to 1, per vertex. */
-  readonly brightness: Float32Array;
-  readonly report: Report;
-  /** The relief that it is the light on. */
-  readonly of: Shown;
-}
+/** What it needs of the room. */
+type LightRoom = Pick<
+  RoomSession<ReliefDocument>,
+  'services' | 'document' | 'active' | 'subject' | 'title' | 'busy'
+> & {
+  readonly shown: ReadonlySignal<Shown | null>;
+  readonly fits: ReadonlySignal<boolean>;
+  readonly model: { readonly previewSubject: ReadonlySignal<Subject | null> };
+};
 
 interface LightRequest {
   readonly shown: Shown;
@@ -38,23 +42,23 @@ export class ReliefLight {
   /** Why there is none, where no field is to blame. */
   readonly problem = signal<string | null>(null);
   readonly operation = computed(() => {
-    const catalog = this.#session.services.catalog.value;
+    const catalog = this.#room.services.catalog.value;
     return catalog === null ? null : (findOperation(catalog, lightOperation) ?? null);
   });
-  readonly #session: ReliefSession;
+  readonly #room: LightRoom;
   readonly #latest = new LatestOnly<LightRequest>(
     (request, abort) => this.#run(request, abort),
     (running, next) => running.shown !== next.shown,
     (running, next) => running.shown === next.shown && jsonEqual(running.job.parameters, next.job.parameters),
   );
 
-  constructor(session: ReliefSession) {
-    this.#session = session;
+  constructor(room: LightRoom) {
+    this.#room = room;
   }
 
   startFollowing(): void {
     effect(() => {
-      const request = this.open.value && this.#session.active.value ? this.#request(['light.ply']) : null;
+      const request = this.open.value && this.#room.active.value ? this.#request(['light.ply']) : null;
       untracked(() => {
         if (request) this.#latest.request(request);
         else this.#latest.cancel();
@@ -63,27 +67,26 @@ export class ReliefLight {
   }
 
   values(): JsonObject {
-    return this.#session.document.value.light;
+    return this.#room.document.value.light;
   }
 
   preview(name: string, value: Json): void {
     const operation = this.operation.value;
-    if (operation)
-      this.#session.services.projects.do(setLight(operation, { [name]: value }, `light ${name}`));
+    if (operation) this.#room.services.projects.do(setLight(operation, { [name]: value }, `light ${name}`));
   }
 
   /** Finished by a press: one step to undo. */
   set(name: string, value: Json): void {
     this.preview(name, value);
-    this.#session.services.projects.commit();
+    this.#room.services.projects.commit();
   }
 
   /** Makes one of the other files in this light and hands it to the browser. */
   async save(name: string, label: string): Promise<void> {
     const request = this.#request([name]);
     if (request === null) return;
-    const fileName = `${safeFileName(this.#session.title)}-${name}`;
-    const bytes = await this.#session.busy(
+    const fileName = `${safeFileName(this.#room.title)}-${name}`;
+    const bytes = await this.#room.busy(
       'exporting',
       label,
       async (options: RunOptions) => await bytesOf(await request.backend.run(request.job, options), name),
@@ -94,16 +97,16 @@ export class ReliefLight {
   }
 
   #request(outputs: readonly string[]): LightRequest | null {
-    const session = this.#session;
+    const room = this.#room;
     const operation = this.operation.value;
-    const shown = session.shown.value;
-    const { light } = session.document.value;
+    const shown = room.shown.value;
+    const { light } = room.document.value;
     const full = shown?.kind === 'full';
-    const subject = full ? session.subject.value : session.model.previewSubject.value;
-    if (operation === null || shown === null || subject === null || !session.fits.value) return null;
+    const subject = full ? room.subject.value : room.model.previewSubject.value;
+    if (operation === null || shown === null || subject === null || !room.fits.value) return null;
     const parameters = lightParameters(operation, shown.parameters, light, full ? null : shown);
     const job = { operation: lightOperation, parameters, inputs: subject.inputs, outputs };
-    const backend = (full ? readyWorker(session.services) : null) ?? session.services.browser;
+    const backend = (full ? readyWorker(room.services) : null) ?? room.services.browser;
     return { shown, job, backend };
   }
 

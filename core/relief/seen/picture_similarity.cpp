@@ -170,4 +170,20 @@ double picture_similarity(const NormalPicture& model, const NormalPicture& relie
   return sum / (pixels * static_cast<double>(lights.size()));
 }
 
+double brightness_similarity(int columns, int rows, const std::vector<float>& model, const std::vector<float>& relief,
+                             const std::vector<char>& mask, Context& context) {
+  // A light along x shows the first component of a normal as it is.
+  const auto picture_of = [&](const std::vector<float>& brightness) {
+    NormalPicture picture;
+    picture.grid = {columns, rows, 0, 0};
+    picture.x = brightness;
+    picture.y.assign(brightness.size(), 0);
+    picture.z.assign(brightness.size(), 0);
+    picture.covered = mask;
+    return picture;
+  };
+  const std::array<Vec3, 1> along_x{Vec3(1, 0, 0)};
+  return picture_similarity(picture_of(model), picture_of(relief), along_x, context);
+}
+
 }  // namespace formwright

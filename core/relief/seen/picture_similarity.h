@@ -22,6 +22,11 @@ inline constexpr int usual_light_count = 32;
 double picture_similarity(const NormalPicture& model, const NormalPicture& relief, std::span<const Vec3> lights,
                           Context& context);
 
+/// The same of two pictures of brightness, 0 to 1, rows * columns, over the pixels of `mask`: for light that casts
+/// shadows.
+double brightness_similarity(int columns, int rows, const std::vector<float>& model, const std::vector<float>& relief,
+                             const std::vector<char>& mask, Context& context);
+
 /// Share of the covered pixels, in percent, that lie on a false edge: the relief's normals turn there as at a crease of
 /// 30 degrees or more, while the model's nowhere within 6 pixels turn as at a crease of 15. Normals are smoothed by a
 /// Gaussian of 3 pixels before they are differentiated, as in Canny 1986, who also has the two thresholds; over all

@@ -4,6 +4,7 @@
 //   sample_pictures one SAMPLE VERTICES PIXELS OUT.png [turn_deg tilt_deg]
 //   sample_pictures relief SAMPLE VERTICES RELIEF.ply THICKNESS_MM OUT.png
 //   sample_pictures solids OUT.png SOLID.stl ...
+//   sample_pictures grid OUT.png COLUMNS PICTURE.png ...
 // RELIEF.ply: `formwright relief --sample SAMPLE --sample-vertices VERTICES --projection orthographic`.
 #include <Eigen/Geometry>
 #include <cmath>
@@ -130,6 +131,24 @@ void solids(const std::string& path, const std::vector<std::string>& files) {
   save(path, encode_palette_png(side_by_side(all, size, 25, 50, 1.35)));
 }
 
+/// Pictures of one size beside and below each other.
+void grid(const std::string& path, int columns, const std::vector<std::string>& files) {
+  constexpr std::uint8_t behind = 222;
+  std::vector<RgbPicture> pictures;
+  for (const std::string& file : files) {
+    std::ifstream stream(file, std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+    pictures.push_back(decode_png(to_bytes(bytes), behind));
+    if (pictures.back().bytes.empty()) throw Error(ErrorCode::invalid_input, "grid", file + " is no picture.");
+  }
+  const int width = pictures.front().width, height = pictures.front().height;
+  const int rows = (static_cast<int>(files.size()) + columns - 1) / columns;
+  RgbPicture sheet = blank_picture(columns * width, rows * height, RenderOptions().background);
+  for (int k = 0; k < static_cast<int>(files.size()); ++k)
+    paste(sheet, pictures[static_cast<std::size_t>(k)], k % columns * width, k / columns * height);
+  save(path, encode_palette_png(sheet));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -146,9 +165,12 @@ int main(int argc, char** argv) {
       relief(argv[2], std::atoi(argv[3]), argv[4], std::atof(argv[5]), argv[6]);
     } else if (argc > 3 && std::strcmp(argv[1], "solids") == 0) {
       solids(argv[2], {argv + 3, argv + argc});
+    } else if (argc > 4 && std::strcmp(argv[1], "grid") == 0) {
+      grid(argv[2], std::atoi(argv[3]), {argv + 4, argv + argc});
     } else {
-      std::cerr << "sample_pictures sheet OUT.png | one SAMPLE VERTICES PIXELS OUT.png [turn_deg tilt_deg] | relief "
-                   "SAMPLE VERTICES RELIEF.ply THICKNESS_MM OUT.png | solids OUT.png SOLID.stl ...\n";
+      std::cerr
+          << "sample_pictures sheet OUT.png | one SAMPLE VERTICES PIXELS OUT.png [turn_deg tilt_deg] | relief "
+             "SAMPLE VERTICES RELIEF.ply THICKNESS_MM OUT.png | solids OUT.png SOLID.stl ... | grid OUT.png COLUMNS PICTURE.png ...\n";
       return 2;
     }
   } catch (const Error& error) {

@@ -90,13 +90,13 @@ std::uint8_t nearest(const std::vector<Colour>& palette, const Colour& colour) {
 
 }  // namespace
 
-RgbPicture decode_png(ByteView bytes) {
+RgbPicture decode_png(ByteView bytes, std::uint8_t behind) {
   RgbPicture picture;
   png_image image{};
   image.version = PNG_IMAGE_VERSION;
   if (png_image_begin_read_from_memory(&image, bytes.data(), bytes.size()) == 0) return picture;
   image.format = PNG_FORMAT_RGB;
-  std::vector<std::uint8_t> pixels(PNG_IMAGE_SIZE(image));
+  std::vector<std::uint8_t> pixels(PNG_IMAGE_SIZE(image), behind);
   if (png_image_finish_read(&image, nullptr, pixels.data(), 0, nullptr) == 0) return picture;
   picture.width = static_cast<int>(image.width);
   picture.height = static_cast<int>(image.height);

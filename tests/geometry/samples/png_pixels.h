@@ -17,7 +17,8 @@ struct RgbPicture {
   }
 };
 
-RgbPicture decode_png(ByteView png);
+/// `behind`: grey level behind clear parts.
+RgbPicture decode_png(ByteView png, std::uint8_t behind = 0);
 
 /// With the 255 colours that fit best: about a third of the size in full colour.
 Bytes encode_palette_png(const RgbPicture& picture);

@@ -122,7 +122,8 @@ export interface LightDirection {
   follows?: 'object' | 'camera';
 }
 
-export type ColourMapName = 'error' | 'thickness' | 'signed';
+/** 'brightness' shows the values themselves as greys, from black to white: the view's own light does not fall on them. */
+export type ColourMapName = 'error' | 'thickness' | 'signed' | 'brightness';
 
 export interface ColourMapping {
   /** Key of MeshData.attributes. */

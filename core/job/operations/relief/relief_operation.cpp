@@ -10,6 +10,7 @@
 #include "job/contract/model_input.h"
 #include "job/contract/operation_options.h"
 #include "job/operations/relief/relief_base.h"
+#include "job/operations/relief/solved_relief.h"
 #include "relief/height_map.h"
 #include "relief/relief.h"
 #include "relief/seen/seen_difference.h"
@@ -17,8 +18,6 @@
 namespace formwright {
 namespace {
 
-// Of the relief's thickness: how far the solid's larger triangles may leave the height field.
-constexpr double solid_tolerance = 1e-3;
 constexpr double nodes_of_picture = 256;   // across the base where it is only looked at
 constexpr double gap_worth_a_note = 1e-6;  // of the shape error: below, no eye and no gauge tells the difference
 constexpr double unbounded_mm = 1e30;      // stands for "no bound" in relief.ply, where infinity has no safe spelling
@@ -124,12 +123,6 @@ TriangleMesh plate_mesh(PlateSize plate, double plate_mm) {
   return box;
 }
 
-/// What stands before the base: the relief, or on steps its pieces.
-CoveringMesh covering(const ReliefSolver& solver, const Relief& relief) {
-  if (relief.pieces.band.empty()) return {relief.moved, solver.F()};
-  return {relief.pieces.V, relief.pieces.F, &relief.pieces.band};
-}
-
 /// The base in the same axes, for pictures only: coarser than the solid, and as deep as it may be carved behind the
 /// relief.
 TriangleMesh base_mesh(const ReliefSolver& solver, const Relief& relief, PlateSize plate, const ReliefOptions& options,
@@ -137,7 +130,7 @@ TriangleMesh base_mesh(const ReliefSolver& solver, const Relief& relief, PlateSi
   if (space.base.is_flat() && space.below_mm == 0) return plate_mesh(plate, options.plate_mm);
   const double pixel_mm = std::max(options.pixel_mm, std::max(plate.width_mm, plate.height_mm) / nodes_of_picture);
   const HeightMap bed = make_bed_map(covering(solver, relief), options.width_mm, plate, pixel_mm, space, context);
-  TriangleMesh mesh = make_solid(bed, options.plate_mm, solid_tolerance * (bed.top_mm - bed.floor_mm), context);
+  TriangleMesh mesh = make_solid(bed, options.plate_mm, solid_tolerance_share * (bed.top_mm - bed.floor_mm), context);
   mesh.V.rowwise() -= Eigen::RowVector3d(plate.width_mm / 2, plate.height_mm / 2, options.plate_mm - bed.floor_mm);
   return mesh;
 }
@@ -239,46 +232,27 @@ std::vector<std::string> notes_of(const Relief& relief) {
 
 OperationResult run_relief(const OperationCall& call, const ReliefOptions& options) {
   Context& context = call.context;
-  std::shared_ptr<const LoadedModel> loaded, base_model;
-  {
-    const auto span = context.span(0, 0.1, "Reading the model");
-    loaded = load_model(call);
-    base_model = load_base(call, options);
-  }
-  const std::string key = "relief:" + loaded->key + ":" + ReliefSolver::key(options);
-  auto solver = call.session.find<ReliefSolver>(key);
-  const bool reused = solver != nullptr;
-  if (!solver) {
-    // The old factorisation goes first: two at once would not fit where one does.
-    call.session.drop("relief:" + loaded->key + ":");
-    const auto span = context.span(0.1, 0.55, "Finding the visible surface");
-    solver = std::make_shared<ReliefSolver>(loaded->model.mesh, options, context);
-    call.session.keep(key, solver, solver->memory_mb());
-  }
+  const SolvedRelief solved = [&] {
+    const auto span = context.span(0, 0.9, "Reading the model");
+    return solve_relief(call, options);
+  }();
+  const std::shared_ptr<const LoadedModel>& loaded = solved.loaded;
+  const std::shared_ptr<ReliefSolver>& solver = solved.solver;
+  const Relief& relief = solved.relief;
   Stopwatch watch;
-  const BaseSurface base = relief_base(base_model.get(), options, solver->frame());
-  Relief relief;
-  {
-    const auto span = context.span(0.55, 0.9, "Fitting into the thickness");
-    relief = solver->solve(options, base, context);
-  }
-  // The balanced appearance has a factorisation of its own, made by its first solve.
-  if (options.appearance == Appearance::balanced) call.session.keep(key, solver, solver->memory_mb());
-  const double seconds_solve = watch.lap();
 
   context.progress(0.9, "Writing");
   OperationResult result;
   Json& report = result.report;
   report_relief(report, *loaded, *solver, relief, options);
-  report["factor_reused"] = reused;
+  report["factor_reused"] = solved.reused;
   if (options.compare_pictures) report_pictures(report, *solver, relief, context);
 
   const ViewFrame& frame = solver->frame();
-  const PlateSize plate{options.width_mm + 2 * options.margin_mm,
-                        frame.image_height * options.width_mm + 2 * options.margin_mm};
-  const AllowedSpace space{base, options.thickness_mm, options.carve_depth_mm};
+  const PlateSize plate = plate_of(frame, options);
+  const AllowedSpace space = allowed_space(solved, options);
   const auto base_depth =
-      base.depth_range(0.5 * plate.width_mm / options.width_mm, 0.5 * plate.height_mm / options.width_mm)
+      solved.base.depth_range(0.5 * plate.width_mm / options.width_mm, 0.5 * plate.height_mm / options.width_mm)
           .value_or(std::pair{0.0, 0.0});
   const double range_mm = options.width_mm * (base_depth.second - base_depth.first) + space.above_mm + space.below_mm;
   report["size_mm"] = {plate.width_mm, plate.height_mm, options.plate_mm + range_mm};
@@ -334,16 +308,16 @@ OperationResult run_relief(const OperationCall& call, const ReliefOptions& optio
     }
     if (wants_solid) {
       Model solid;
-      solid.mesh = make_solid(map, options.plate_mm, solid_tolerance * options.thickness_mm, context);
+      solid.mesh = make_solid(map, options.plate_mm, solid_tolerance_share * options.thickness_mm, context);
       report["watertight"] = Adjacency(solid.mesh).is_closed();
       for (const char* name : {"relief.stl", "relief.3mf", "relief.obj"})
         if (call.wants(name)) add(name, write_model(solid, *mesh_format_of_extension(name), context));
     }
   }
   report["seconds_read"] = loaded->seconds_read + loaded->seconds_repair;
-  report["seconds_setup"] = reused ? 0.0 : solver->seconds_setup();
-  report["seconds_solve"] = seconds_solve + (reused ? 0.0 : solver->seconds_factorise());
-  report["seconds_factorise"] = reused ? 0.0 : solver->seconds_factorise();
+  report["seconds_setup"] = solved.reused ? 0.0 : solver->seconds_setup();
+  report["seconds_solve"] = solved.seconds_solve + (solved.reused ? 0.0 : solver->seconds_factorise());
+  report["seconds_factorise"] = solved.reused ? 0.0 : solver->seconds_factorise();
   report["seconds_write"] = watch.seconds();
   report["repairs"] = loaded->repairs;
   report["notes"] = notes_of(relief);

@@ -28,7 +28,8 @@ import type { ReliefSession } from './relief_session';
 import type { SendToMill } from './send_relief';
 import { sendRelief } from './send_relief';
 import { solidLine } from './report';
-import { atViewpoint, followCamera } from './viewport_panel';
+import { LightPanel } from './light/light_panel';
+import { atViewpoint, followCamera, mode } from './viewport_panel';
 
 export interface InspectorProps {
   readonly session: ReliefSession;
@@ -55,6 +56,7 @@ export function Inspector(props: InspectorProps) {
     <>
       <div class="inspector-scroll" tabIndex={-1}>
         <ModelRow session={session} picture={picture} onReplace={onReplace} />
+        {mode.value === 'light' ? <LightPanel session={session} /> : null}
         <ParameterPanel
           operation={shown}
           parameters={parameters}

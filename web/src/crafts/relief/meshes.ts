@@ -7,6 +7,8 @@ import { along, viewerAxes } from '../../view/vector';
 import { figure, vectorOf } from '../../shared/session/report';
 import type { ShadedMesh } from '../../shared/panels/shaded_mesh';
 import { shadingOf } from '../../shared/panels/shaded_mesh';
+import { brightnessMapping } from './light/light_values';
+import type { LitRelief } from './shown';
 
 export const errorMapping: ColourMapping = {
   attribute: 'normal_error_deg',
@@ -30,6 +32,14 @@ export const reliefData = (mesh: ShadedMesh): MeshData => ({
   ...shadingOf(mesh),
   attributes: { [errorMapping.attribute]: errorOf(mesh) },
 });
+
+/** Light is drawn as it is, so that one normal does for all. */
+export const litData = ({ positions, indices, brightness, of }: LitRelief): MeshData => {
+  const [x, y, z] = axis(of.report, 'direction', [0, 0, -1]);
+  const normals = new Float32Array(positions.length);
+  for (let i = 0; i < normals.length; i += 3) normals.set([-x, -y, -z], i);
+  return { positions, indices, normals, attributes: { [brightnessMapping.attribute]: brightness } };
+};
 
 const axis = (report: Report, name: string, otherwise: Vec3): Vec3 => vectorOf(report, name) ?? otherwise;
 

@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The relief's part of a project.
-import type { JobInput } from '../../jobs/contract';
+import type { JobInput, JsonObject } from '../../jobs/contract';
 import type { Companion, CraftDocument, CraftResult, Subject } from '../../shared/session/craft_document';
 import { CraftCommands, emptyCraft, sameRequest } from '../../shared/session/craft_document';
 
 export interface ReliefDocument extends CraftDocument {
   /** The file of the surface that the relief is worked into; null for a built-in shape. */
   readonly base: Companion | null;
+  /** What differs from the defaults of the light that it is shown in. */
+  readonly light: JsonObject;
 }
 
-export const relief = new CraftCommands<ReliefDocument>('relief', { ...emptyCraft, base: null });
+export const relief = new CraftCommands<ReliefDocument>('relief', { ...emptyCraft, base: null, light: {} });
 
 /** The operation's input for it. */
 export const baseInputs = ({ base }: ReliefDocument): Readonly<Record<string, JobInput>> =>

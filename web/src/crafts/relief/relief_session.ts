@@ -9,24 +9,19 @@ import type { Measured } from '../../shared/session/estimate';
 import { estimateMemory_mb, expectedTimes } from '../../shared/session/estimate';
 import { bytesOf } from '../../shared/session/import_model';
 import { OpenedModel } from '../../shared/session/opened_model';
-import type { PreviewRequest, ShownWork } from '../../shared/session/previews';
+import type { PreviewRequest } from '../../shared/session/previews';
 import { Previews } from '../../shared/session/previews';
 import { readMesh } from '../../shared/session/read_mesh';
 import { figure } from '../../shared/session/report';
 import { RoomSession } from '../../shared/session/room_session';
 import type { Services } from '../../shared/session/services';
-import type { ShadedMesh } from '../../shared/panels/shaded_mesh';
-import type { MeshData, Viewpoint } from '../../view';
+import type { Viewpoint } from '../../view';
+import { ReliefLight } from './light/relief_light';
 import { baseOf, parametersOf } from './meshes';
 import type { ReliefDocument } from './relief_document';
 import { baseInputs, currentResult, relief, takeBase } from './relief_document';
 import { solverSeconds } from './report';
-
-export interface Shown extends ShownWork {
-  readonly mesh: ShadedMesh;
-  /** Behind it, where that is no flat plate. */
-  readonly base: MeshData | null;
-}
+import type { Shown } from './shown';
 
 const shownOutputs = ['relief.ply', 'base.ply'];
 
@@ -59,12 +54,14 @@ export class ReliefSession extends RoomSession<ReliefDocument> {
     read: (result) => this.#readResult(result),
   });
   readonly shown = this.previews.shown;
+  readonly light = new ReliefLight(this);
   readonly #previewed = signal<Measured | null>(null);
   readonly #previewMemory_mb = signal(0);
 
   constructor(services: Services) {
     super(services, relief);
     this.previews.startFollowing();
+    this.light.startFollowing();
   }
 
   openFiles(files: readonly File[]): Promise<boolean> {

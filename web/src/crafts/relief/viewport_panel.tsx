@@ -10,11 +10,15 @@ import { Legend } from '../../shared/panels/legend';
 import { narrow } from '../../shared/panels/narrow';
 import { figure } from '../../shared/session/report';
 import { originalData, scaled } from '../../shared/panels/shaded_mesh';
-import { errorMapping, errorOf, plateOf, reliefData, viewpointOf } from './meshes';
-import type { ReliefSession, Shown } from './relief_session';
+import { brightnessMapping } from './light/light_values';
+import { errorMapping, errorOf, litData, plateOf, reliefData, viewpointOf } from './meshes';
+import type { ReliefSession } from './relief_session';
+import type { LitRelief, Shown } from './shown';
+
+type ReliefMode = ViewMode | 'light';
 
 /** The viewport's own state outlives a visit to another page. */
-export const mode = signal<ViewMode>('swipe');
+export const mode = signal<ReliefMode>('swipe');
 const light = signal<LightDirection>({ azimuthDeg: 135, elevationDeg: 35, follows: 'object' });
 export const atViewpoint = signal(true);
 export const followCamera = signal(false);
@@ -28,11 +32,12 @@ function followOnly(session: ReliefSession): void {
   followed = which;
 }
 
-const modes: readonly { value: ViewMode; label: string }[] = [
+const modes: readonly { value: ReliefMode; label: string; short?: string }[] = [
   { value: 'swipe', label: 'Swipe' },
   { value: 'relief', label: 'Relief' },
   { value: 'original', label: 'Original' },
   { value: 'error', label: 'Shading difference' },
+  { value: 'light', label: 'In real light', short: 'Light' },
 ];
 
 export interface ViewportPanelProps {
@@ -51,11 +56,12 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
   const foot = useRef<HTMLDivElement>(null);
   /** The view says itself why it cannot draw; what belongs to a picture goes away. */
   const drawing = useSignal(true);
+  const isNarrow = useSignal(narrow());
 
   useEffect(() => {
     if (container.current === null) return undefined;
     const viewport = new Viewport(container.current, {
-      mode: mode.value,
+      mode: drawnMode(mode.value),
       light: light.value,
       freeRectangle: freeRectangle(null),
       label: 'Model and relief',
@@ -73,20 +79,27 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
     ball.current?.append(lightBall.element);
     const inset = new SideInset(viewport);
     side.current?.append(inset.element);
-    viewport.setColourMapping(errorMapping);
     const stop = [
       effect(() => followOnly(session)),
-      effect(() => viewport.setMode(mode.value)),
+      effect(() => {
+        session.light.open.value = mode.value === 'light';
+        viewport.setColourMapping(mode.value === 'light' ? brightnessMapping : errorMapping);
+        viewport.setMode(drawnMode(mode.value));
+      }),
       keepDrawn(viewport, session, (thickness) => inset.update(thickness)),
       effect(() =>
         viewport.setResting(session.previews.running.value || session.activity.value.kind !== 'idle'),
       ),
     ];
-    const resize = new ResizeObserver(() => viewport.setFreeRectangle(freeRectangle(foot.current)));
+    const resize = new ResizeObserver(() => {
+      isNarrow.value = narrow();
+      viewport.setFreeRectangle(freeRectangle(foot.current));
+    });
     resize.observe(container.current);
     if (foot.current) resize.observe(foot.current);
     onViewport(viewport);
     return () => {
+      session.light.open.value = false;
       onViewport(null);
       resize.disconnect();
       for (const end of stop) end();
@@ -97,10 +110,11 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
   }, []);
 
   const shown = session.shown.value;
-  const options = modes.map((option) => ({
-    ...option,
+  const options = modes.map(({ value, label, short }) => ({
+    value,
+    label: isNarrow.value ? (short ?? label) : label,
     disabledReason:
-      shown === null && option.value !== 'original' ? 'Available when the first preview is ready' : undefined,
+      shown === null && value !== 'original' ? 'Available when the first preview is ready' : undefined,
   }));
   return (
     <div class="viewport-panel">
@@ -134,13 +148,16 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
       <div
         ref={ball}
         class="float top-right panel light-panel"
-        hidden={session.model.original.value === null || !drawing.value}
+        hidden={session.model.original.value === null || !drawing.value || mode.value === 'light'}
       />
       <div ref={side} class="float bottom-right panel side-inset" hidden={shown === null || !drawing.value} />
       {children}
     </div>
   );
 }
+
+/** Light is drawn as values on the relief. */
+const drawnMode = (chosen: ReliefMode): ViewMode => (chosen === 'light' ? 'error' : chosen);
 
 /** What floats stays off the object: light and side view right, notes and legends below. */
 function freeRectangle(foot: Element | null): Insets {
@@ -158,7 +175,7 @@ function keepDrawn(
   onRelief: (thickness_mm: number) => void,
 ): () => void {
   let drawnOriginal: { from: string; scale: number } | null = null;
-  let drawnRelief: Shown | null = null;
+  let drawnRelief: Drawn = null;
   let drawnModel: string | null = null;
   const draw = () => {
     const original = session.model.original.value;
@@ -180,13 +197,13 @@ function keepDrawn(
       if (drawnModel !== original.from) viewport.fit(false);
       return;
     }
-    if (drawnRelief === shown) return;
     const thickness = Number(inForceOf(session, shown, 'thickness_mm'));
-    const plate: Plate | null = plateOf(shown.report, thickness, shown.base);
-    if (drawnRelief?.from === shown.from && drawnRelief.mesh.indices.length === shown.mesh.indices.length) {
-      viewport.updateRelief(shown.mesh.positions, plate);
-      viewport.updateAttribute('relief', errorMapping.attribute, errorOf(shown.mesh));
-    } else viewport.setRelief(reliefData(shown.mesh), plate);
+    // The light on the relief before stays until the new one is cast.
+    const found = mode.value === 'light' ? session.light.lit.value : null;
+    const lit = found?.of.from === shown.from ? found : null;
+    if (drawnRelief === (lit ?? shown)) return;
+    if (lit) drawLit(viewport, lit, drawnRelief, Number(inForceOf(session, lit.of, 'thickness_mm')));
+    else drawShaded(viewport, shown, drawnRelief, thickness);
     const viewpoint = viewpointOf(shown.report, Number(inForceOf(session, shown, 'field_of_view_deg') ?? 20));
     if (viewpoint) {
       const first = drawnModel !== original.from;
@@ -195,10 +212,40 @@ function keepDrawn(
       if (stay) viewport.lookFromViewpoint(false);
       drawnModel = original.from;
     }
-    drawnRelief = shown;
+    drawnRelief = lit ?? shown;
     onRelief(thickness);
   };
   return effect(draw);
+}
+
+type Drawn = Shown | LitRelief | null;
+
+function drawShaded(viewport: Viewport, shown: Shown, before: Drawn, thickness_mm: number): void {
+  const plate: Plate | null = plateOf(shown.report, thickness_mm, shown.base);
+  const sameTriangles =
+    before !== null &&
+    'mesh' in before &&
+    before.from === shown.from &&
+    before.mesh.indices.length === shown.mesh.indices.length;
+  if (sameTriangles) {
+    viewport.updateRelief(shown.mesh.positions, plate);
+    viewport.updateAttribute('relief', errorMapping.attribute, errorOf(shown.mesh));
+  } else viewport.setRelief(reliefData(shown.mesh), plate);
+}
+
+/** The front of the solid has its plate in itself. */
+function drawLit(viewport: Viewport, lit: LitRelief, before: Drawn, thickness_mm: number): void {
+  const sameSolid =
+    before !== null &&
+    'brightness' in before &&
+    before.of === lit.of &&
+    before.indices.length === lit.indices.length;
+  if (sameSolid) {
+    viewport.updateAttribute('relief', brightnessMapping.attribute, lit.brightness);
+    return;
+  }
+  const plate = plateOf(lit.of.report, thickness_mm);
+  viewport.setRelief(litData(lit), plate && { ...plate, mesh: false });
 }
 
 function inForceOf(session: ReliefSession, shown: Shown, name: string) {

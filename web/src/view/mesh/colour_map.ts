@@ -17,6 +17,7 @@ const DEFAULT_STOPS: Record<ColourMapName, readonly string[]> = {
     '#e6f2c8',
     '#f6f5df',
   ],
+  brightness: ['#000000', '#ffffff'],
   error: ['#faf6e6', '#fbedbe', '#fddd8a', '#fbbf52', '#f0963a', '#db6b2a', '#b2471c', '#7e2d14', '#4a1a10'],
   signed: [
     '#001261',

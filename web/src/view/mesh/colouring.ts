@@ -47,7 +47,10 @@ export class Colouring {
           null)
         : null;
       if (!mapping || values?.length !== surface.vertexCount) surface.setScalar(null, null, 0, 1);
-      else surface.setScalar(values, this.texture(mapping.map), mapping.minimum, mapping.maximum);
+      else {
+        const { map, minimum, maximum } = mapping;
+        surface.setScalar(values, this.texture(map), minimum, maximum, map === 'brightness');
+      }
     }
   }
 

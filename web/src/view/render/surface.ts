@@ -166,6 +166,7 @@ export class Surface {
       uOpacity: { value: 1 },
       uMap: { value: null },
       uMapRange: { value: new THREE.Vector2(0, 1) },
+      uUnlit: { value: 0 },
       uTexture: { value: texture },
     };
     const material = new THREE.RawShaderMaterial({
@@ -266,8 +267,15 @@ export class Surface {
     ++this.version;
   }
 
-  /** Colours by values per mesh vertex; null goes back to plaster. Only values: keep `map` and set the range. */
-  setScalar(values: Float32Array | null, map: THREE.Texture | null, minimum: number, maximum: number): void {
+  /** Colours by values per mesh vertex; null goes back to plaster. Only values: keep `map` and set the range. `unlit`: as they are,
+   *  without light and shadow of the view. */
+  setScalar(
+    values: Float32Array | null,
+    map: THREE.Texture | null,
+    minimum: number,
+    maximum: number,
+    unlit = false,
+  ): void {
     const material = this.main.material;
     this.scalarValues = values;
     const wasMapped = this.scalar !== null;
@@ -293,6 +301,7 @@ export class Surface {
     }
     this.uniforms['uMap']!.value = this.scalarMap;
     (this.uniforms['uMapRange']!.value as THREE.Vector2).set(minimum, maximum);
+    this.uniforms['uUnlit']!.value = unlit ? 1 : 0;
   }
 
   /** A cut shows the inside. */

@@ -97,6 +97,7 @@ uniform float uNoise;
 #ifdef SCALAR
 uniform sampler2D uMap;
 uniform vec2 uMapRange;
+uniform float uUnlit;            // values are light themselves
 #endif
 #ifdef TEXTURED
 uniform sampler2D uTexture;
@@ -139,6 +140,7 @@ void main() {
   vec3 n = normalize(vNormal);
   vec3 albedo = uAlbedo;
   float mapped = 0.0;
+  float unlit = 0.0;
 #ifdef COLOURS
   albedo = toLinear(vColour);
 #endif
@@ -151,6 +153,7 @@ void main() {
     float texels = float(textureSize(uMap, 0).x);
     albedo = toLinear(texture(uMap, vec2((f * (texels - 1.0) + 0.5) / texels, 0.5)).rgb);
     mapped = 1.0;
+    unlit = uUnlit;
   }
 #endif
   // Facing the viewer, for open surfaces and cuts; a little slack where smooth normals lean away.
@@ -184,7 +187,7 @@ void main() {
   vec3 sheen = vec3(0.035 * pow(nh, 14.0) * lit * uKey);
   // Colours that carry values keep their lightness: half the modelling is enough.
   light = mix(light, 0.36 + 0.62 * light, mapped);
-  vec3 c = shoulder(albedo * light + sheen * (1.0 - mapped));
+  vec3 c = mix(shoulder(albedo * light + sheen * (1.0 - mapped)), albedo, unlit);
   c = mix(c, vec3(0.69, 0.36, 0.0), uHighlight);
   outColour = vec4(toSrgb(c) * uOpacity, uOpacity);
 }

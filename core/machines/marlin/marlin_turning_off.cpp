@@ -9,7 +9,7 @@ namespace {
 
 constexpr double escalation_s = 2;
 constexpr double quiet_s = 1.5;  // an M410 may take a second to be answered
-constexpr const char *focus_wait = "G4 P250", *dark = "M5", *dark_inline = "M5 I";
+constexpr const char *focus_wait = "G4 P250", *beam_off = "M5", *beam_off_inline = "M5 I";
 
 }  // namespace
 
@@ -19,7 +19,7 @@ void MarlinDriver::stop(const char* how, double now_s) {
   drop_output();
   // A line that did not leave or did not arrive will be asked for by its number: it must not move anything then.
   for (SentLine& line : sent_)
-    if (!line.text.starts_with("M110") && !line.text.starts_with(dark)) line = {line.number, -1, "M105"};
+    if (!line.text.starts_with("M110") && !line.text.starts_with(beam_off)) line = {line.number, -1, "M105"};
   resend_at_ = sent_.size();
   place_.lose();
   settling_ = Settles::nothing;
@@ -29,13 +29,13 @@ void MarlinDriver::stop(const char* how, double now_s) {
   oks_to_swallow_ = 0;
   turn_all_off_at_once(now_s);
   for (const std::string& line : lines_that_turn_off()) queue(line);
-  if (options_.tool == MachineTool::laser) queue(dark_inline);
+  if (options_.tool == MachineTool::laser) queue(beam_off_inline);
   stopped_s_ = now_s;
 }
 
 void MarlinDriver::queue_dark() {
-  queue(dark);
-  queue(dark_inline);
+  queue(beam_off);
+  queue(beam_off_inline);
   if (laser_use_.fan) queue("M107");
 }
 
@@ -48,10 +48,10 @@ void MarlinDriver::prepare_moves(double now_s) {
 void MarlinDriver::send_focus_pulse(double now_s) {
   // In one write: where the computer dies behind it, the machine still has what turns it off.
   std::string together;
-  for (const std::string& text : {focus_line_, std::string(focus_wait), std::string(dark)}) {
+  for (const std::string& text : {focus_line_, std::string(focus_wait), std::string(beam_off)}) {
     const int number = next_number_++;
     together += numbered_line(number, text) + "\n";
-    keep({number, -1, text, text != dark});
+    keep({number, -1, text, text != beam_off});
     ++waiting_;
   }
   write(together);
@@ -64,7 +64,7 @@ void MarlinDriver::focus_off(double now_s) {
   // A light that is not on yet never comes on.
   for (SentLine& line : sent_)
     if (line.text == focus_line_) line.text = "M105";
-  write_unnumbered(dark, now_s);
+  write_unnumbered(beam_off, now_s);
   queue_dark();
 }
 

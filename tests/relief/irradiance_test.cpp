@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/error.h"
 #include "base/parallel.h"
 #include "geometry/test_meshes.h"
 

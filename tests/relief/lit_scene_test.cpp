@@ -164,7 +164,7 @@ TEST_CASE("LitScene.PicturesFromAsideShowTheSamePlaces") {
   const LitObject object(solid);
   for (const double distance : {0.0, 250.0})
     for (const double aside : {-50.0, 0.0, 30.0}) {
-      const PictureView view = picture_of_plate({width_mm, depth_mm}, 1, distance, aside);
+      const PictureView view = picture_around(object, 1, distance, aside);
       const SeenRelief seen = see_relief(view, object, context);
       const std::size_t middle = static_cast<std::size_t>(view.rows / 2) * static_cast<std::size_t>(view.columns) +
                                  static_cast<std::size_t>(view.columns / 2);
@@ -177,6 +177,14 @@ TEST_CASE("LitScene.PicturesFromAsideShowTheSamePlaces") {
       const double shrink = distance > 0 ? distance / (distance - towards) : 1;
       CHECK_THAT(across * shrink, WithinAbs(0.5 * (view.columns % 2 == 0), 2e-2));
       CHECK_THAT(p.y() * shrink, WithinAbs(0.5 * (view.rows % 2 == 0), 2e-2));
+      // Nothing is cut off: each vertex lies in the picture, which is rounded to whole pixels of 1 mm.
+      for (Eigen::Index i = 0; i < solid.V.rows(); ++i) {
+        const Vec3 q = solid.V.row(i).transpose();
+        const double nearer = std::sin(angle) * q.x() + std::cos(angle) * q.z();
+        const double grows = distance > 0 ? distance / (distance - nearer) : 1;
+        CHECK(std::abs((std::cos(angle) * q.x() - std::sin(angle) * q.z()) * grows) <= 0.5 * view.columns + 0.5);
+        CHECK(std::abs(q.y() * grows) <= 0.5 * view.rows + 0.5);
+      }
     }
 }
 

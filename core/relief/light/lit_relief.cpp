@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "base/error.h"
 #include "base/index.h"
 #include "base/parallel.h"
 

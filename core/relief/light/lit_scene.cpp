@@ -49,7 +49,7 @@ LitScene::LitScene(LitObject solid, LitObject model, const TriangleMesh& mesh, c
     : solid_(std::move(solid)),
       model_(std::move(model)),
       relief_(make_lit_relief(solid_, sizes.plate, sizes.pixel_mm, sizes.relief_clearance_mm, context)),
-      view_(picture_of_plate(sizes.plate, sizes.pixel_mm, sizes.distance_mm, 0)),
+      view_(picture_of_plate(sizes.plate, sizes.pixel_mm, sizes.distance_mm)),
       seen_relief_(see_relief(view_, solid_, context)),
       seen_model_(see_model(view_, model_, mesh, sizes.model_clearance_mm, context)) {}
 

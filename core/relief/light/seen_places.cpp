@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "base/index.h"
 #include "base/parallel.h"
@@ -59,6 +60,10 @@ void for_pixels(const PictureView& view, const LitObject& object, Context& conte
   });
 }
 
+int pixels_across(double length_mm, double pixel_mm) {
+  return std::max(1, static_cast<int>(std::lround(length_mm / pixel_mm)));
+}
+
 /// Unit, weighted by the areas of the faces around; 0 at a vertex without any.
 Positions vertex_normals(const TriangleMesh& mesh) {
   Positions normals = Positions::Zero(mesh.V.rows(), 3);
@@ -75,11 +80,22 @@ Positions vertex_normals(const TriangleMesh& mesh) {
 
 }  // namespace
 
-PictureView picture_of_plate(PlateSize plate, double pixel_mm, double distance_mm, double aside_deg) {
-  const auto pixels = [&](double length_mm) {
-    return std::max(1, static_cast<int>(std::lround(length_mm / pixel_mm)));
-  };
-  return {distance_mm, aside_deg, pixels(plate.width_mm), pixels(plate.height_mm), pixel_mm};
+PictureView picture_of_plate(PlateSize plate, double pixel_mm, double distance_mm) {
+  return {distance_mm, 0, pixels_across(plate.width_mm, pixel_mm), pixels_across(plate.height_mm, pixel_mm), pixel_mm};
+}
+
+PictureView picture_around(const LitObject& solid, double pixel_mm, double distance_mm, double aside_deg) {
+  const Vec3 reach = solid.low.cwiseAbs().cwiseMax(solid.high.cwiseAbs());
+  const double aside = std::hypot(reach.x(), reach.z());
+  double half_width = aside, half_height = reach.y();
+  if (distance_mm > 0) {
+    // A cylinder about the upright: its outline, and its nearest place.
+    const double distance = std::max(distance_mm, 2 * aside);
+    half_width *= distance / std::sqrt(distance * distance - aside * aside);
+    half_height *= distance / (distance - aside);
+  }
+  return {distance_mm, aside_deg, pixels_across(2 * half_width, pixel_mm), pixels_across(2 * half_height, pixel_mm),
+          pixel_mm};
 }
 
 std::vector<double> SeenRelief::values(const LitRelief& relief, const std::vector<double>& of_nodes) const {

@@ -5,7 +5,7 @@
 
 namespace formwright {
 
-/// A picture of the plate and no more, as a viewer before its middle sees it, or beside: turned about the upright
+/// A picture about the middle of the plate, as a viewer before it sees it, or beside: turned about the upright
 /// through the middle. x right, y up, z towards the viewer, mm.
 struct PictureView {
   double distance_mm = 0;  // of the eye from the middle; 0: from very far away
@@ -16,7 +16,12 @@ struct PictureView {
   std::size_t pixels() const { return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows); }
 };
 
-PictureView picture_of_plate(PlateSize plate, double pixel_mm, double distance_mm, double aside_deg);
+/// Straight on.
+PictureView picture_of_plate(PlateSize plate, double pixel_mm, double distance_mm);
+
+/// As large as holds the solid from every side: of one size at every angle. From nearer than twice the solid's reach
+/// to the side it is as from there, and what comes nearer to the eye may be cut off.
+PictureView picture_around(const LitObject& solid, double pixel_mm, double distance_mm, double aside_deg);
 
 /// Of the solid: the point of the plate below what is seen, in pixels row by row from the bottom.
 struct SeenRelief {

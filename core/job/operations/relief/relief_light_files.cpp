@@ -51,7 +51,7 @@ Bytes walk_past(const KeptLight& kept, const std::vector<double>& light, double 
   ZipWriter zip;
   int number = 0;
   for (int angle = -walk_end_deg; angle <= walk_end_deg; angle += walk_step_deg) {
-    const PictureView view = picture_of_plate(kept.plate, kept.scene->view().pixel_mm, kept.distance_mm, angle);
+    const PictureView view = picture_around(kept.scene->solid(), kept.scene->view().pixel_mm, kept.distance_mm, angle);
     const std::string place = angle == 0  ? "front"
                               : angle < 0 ? "left_" + std::to_string(-angle) + "_deg"
                                           : "right_" + std::to_string(angle) + "_deg";

@@ -132,7 +132,7 @@ OperationResult run_relief_light(const OperationCall& call, const ReliefLightOpt
   add_output("light.png", [&] { return picture_of_relief(*kept, scene.view(), on_relief, exposure, context); });
   add_output("light_aside.png", [&] {
     const PictureView aside =
-        picture_of_plate(kept->plate, scene.view().pixel_mm, kept->distance_mm, options.viewer_aside_deg);
+        picture_around(scene.solid(), scene.view().pixel_mm, kept->distance_mm, options.viewer_aside_deg);
     return picture_of_relief(*kept, aside, on_relief, exposure, context);
   });
   add_output("walk_past.zip", [&] { return walk_past(*kept, on_relief, exposure, context); });

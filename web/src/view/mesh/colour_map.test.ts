@@ -37,6 +37,10 @@ describe('colour maps', () => {
     expect([...texels.subarray(1020)]).toEqual([74, 26, 16, 255]);
   });
 
+  it('show brightness as it is, whatever the theme', () => {
+    expect(sampleStops(stopsOf('brightness', undefined), 0.4)).toEqual([102, 102, 102]);
+  });
+
   it('read in grey: error darkens all the way, the signed map is darkest at both ends', () => {
     const luminance = ([r, g, b]: readonly [number, number, number]): number =>
       0.2126 * r + 0.7152 * g + 0.0722 * b;

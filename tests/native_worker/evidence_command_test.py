@@ -69,6 +69,18 @@ class Evidence(unittest.TestCase):
         self.assertIn(part, run.stderr)
         self.assertEqual(len(run.stderr.strip().splitlines()), 1, run.stderr)
 
+    def test_a_print_brings_its_own_set_up(self):
+        """What thermoforming writes for measuring simulates the same sheet again."""
+        flags = ("--triangles", 800, "--former", "sheet_a4_cleaner")
+        first, again = self.folder / "formed", self.folder / "formed again"
+        self.run_program("thermoform-simulate", "--sample", "pyramid", "--size-mm", 60, "--turn-deg", 30, "--vacuum-kpa", 61, *flags,
+                         "--outputs", "mould.obj,setup.json", "--out", first)
+        self.run_program("thermoform-simulate", "--object", first, "--triangles", 800, "--out", again)
+        reports = [json.loads((folder / "report.json").read_text()) for folder in (first, again)]
+        for figure in ("vertices", "model_height_mm", "thickness_min_mm", "formed_area_mm2", "elastic_energy_mj"):
+            self.assertAlmostEqual(reports[0][figure], reports[1][figure], delta=1e-3 * abs(reports[0][figure]), msg=figure)
+        self.assertAlmostEqual(json.loads((first / "setup.json").read_text())["vacuum_kpa"], 61)
+
     def test_a_calibration_fits_and_makes_a_profile(self):
         out = self.folder / "calibrated"
         self.run_program("evidence-calibrate", "--object", str(self.object) + "/", "--triangles", 500, "--out", out)

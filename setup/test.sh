@@ -64,13 +64,13 @@ stage() {  # name, runner or -, command...
   fi
 }
 
-# Stories wait for timers and pictures: a build of the lowest priority takes what they leave of the processors.
+# Stories wait for timers and pictures: a build of the lowest priority takes what they leave of the processors. The
+# kernel shares time among sessions before it looks at niceness (sched(7), autogroup): so the build has a session of its own.
 begin_beside() {  # command...
   BESIDE_START=$SECONDS
-  set -m  # a process group of its own, so that finish() ends the compilers, too
-  nice -n 19 "$@" >"$BESIDE_LOG" 2>&1 </dev/null &
-  BESIDE=$!
-  set +m
+  # shellcheck disable=SC2016  # the inner shell expands it
+  setsid nice -n 19 sh -c 'echo 19 >/proc/self/autogroup; exec "$@"' sh "$@" >"$BESIDE_LOG" 2>&1 </dev/null &
+  BESIDE=$!  # its process group, too
 }
 await_beside() {
   BESIDE_STATUS=0

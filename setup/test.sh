@@ -23,6 +23,7 @@ LOG="$(mktemp)"
 BESIDE=''         # process group of what is built while other stages run
 BESIDE_LOG="$(mktemp)"
 BESIDE_START=0
+BESIDE_COMMAND=()
 BESIDE_STATUS=0
 
 finish() {
@@ -67,14 +68,22 @@ stage() {  # name, runner or -, command...
 # Stories wait for timers and pictures: a build of the lowest priority takes what they leave of the processors. The
 # kernel shares time among sessions before it looks at niceness (sched(7), autogroup): so the build has a session of its own.
 begin_beside() {  # command...
+  BESIDE_COMMAND=("$@")
   BESIDE_START=$SECONDS
+  # Where a session may not choose its share, stories would wait for the compiler: the build comes after them.
+  if [ -e /proc/self/autogroup ] && ! setsid sh -c 'echo 19 >/proc/self/autogroup' 2>/dev/null; then return 0; fi
+  # The kernel takes one such choice in a tenth of a second.
   # shellcheck disable=SC2016  # the inner shell expands it
-  setsid nice -n 19 sh -c 'echo 19 >/proc/self/autogroup; exec "$@"' sh "$@" >"$BESIDE_LOG" 2>&1 </dev/null &
+  setsid nice -n 19 sh -c 'sleep 0.2; echo 19 >/proc/self/autogroup; exec "$@"' sh "$@" >"$BESIDE_LOG" 2>&1 </dev/null &
   BESIDE=$!  # its process group, too
 }
 await_beside() {
   BESIDE_STATUS=0
-  wait "$BESIDE" || BESIDE_STATUS=$?
+  if [ -n "$BESIDE" ]; then
+    wait "$BESIDE" || BESIDE_STATUS=$?
+  else
+    "${BESIDE_COMMAND[@]}" >"$BESIDE_LOG" 2>&1 || BESIDE_STATUS=$?
+  fi
   BESIDE=''
 }
 show_beside() {

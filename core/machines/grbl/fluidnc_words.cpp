@@ -5,7 +5,7 @@
 namespace formwright {
 std::optional<GrblWords> fluidnc_alarm(int code) {
   static const std::map<int, GrblWords> words = {
-      {10, {"The spindle's drive does not do what it is told.", "Check its cable and that it is on, then unlock."}},
+      {10, {"The spindle's drive does not follow its orders.", "Check its cable and that it is on, then unlock."}},
       {11,
        {"A switch or button was pressed when the machine started.",
         "Release it, or move the head off the switch, then unlock or home."}},
@@ -18,7 +18,7 @@ std::optional<GrblWords> fluidnc_alarm(int code) {
       {16,
        {"An expansion board with inputs and outputs has restarted.",
         "Check its cable, switch the machine off and on, then home."}},
-      {17, {"A line was refused, and the machine is set to stop then.", "Mend that line, then unlock."}},
+      {17, {"A line was refused, and the machine is set to stop then.", "Correct that line, then unlock."}},
       {18,
        {"A limit switch was hit while the probe was moving.",
         "Move the head off the switch by hand, unlock, then home."}}};
@@ -56,7 +56,7 @@ std::optional<std::string> fluidnc_error(int code) {
       {130, "The jog was ended before it began."},
       {150, "The board's settings name a pin that it does not have."},
       {151, "That part of the board's settings does not take this value."},
-      {152, "The board's settings file is not valid: mend it and restart."},
+      {152, "The board's settings file is not valid: correct it and restart."},
       {160, "The file could not be sent to the board."},
       {161, "The file could not be fetched from the board."},
       {162, "This setting can only be read."},

@@ -90,21 +90,23 @@ double BoundedQp::Implementation::interior_point_work() const {
 
 BoundedQp::Implementation::Outcome BoundedQp::Implementation::solve(const Rows& rows, const BoundedQpOptions& options,
                                                                     Context& context) {
-  ExchangeSettings settings;
-  settings.violation_tolerance = options.violation_tolerance;
-  settings.max_rounds = options.max_rounds;
-  const double share = options.method == QpMethod::exchange ? exchange_only_share : exchange_share;
-  settings.max_work = options.max_exchange_work > 0 ? options.max_exchange_work
-                                                    : std::max(min_exchange_work, share * interior_point_work());
   Outcome outcome;
-  if (options.method != QpMethod::interior_point) {
+  // Leaves what was found so far in the outcome where the work ran out.
+  const auto exchange_within = [&](double max_work) {
     const std::vector<RowKey> base = base_of(rows);
-    outcome.result = exchange.solve(rows, base, settings, context);
-    if (!outcome.result.stopped) {
-      add_base_reactions(energy, rows, base, outcome.result);
-      return outcome;
-    }
-    exchange.forget();
+    outcome.result = exchange.solve(rows, base, {options.violation_tolerance, options.max_rounds, max_work}, context);
+    if (outcome.result.stopped) exchange.forget();
+    else add_base_reactions(energy, rows, base, outcome.result);
+    return !outcome.result.stopped;
+  };
+  const double max_work_of_exchange = std::max(min_exchange_work, exchange_only_share * interior_point_work());
+  double tried = 0;
+  if (options.method != QpMethod::interior_point) {
+    tried = options.max_exchange_work > 0 ? options.max_exchange_work
+            : options.method == QpMethod::exchange
+                ? max_work_of_exchange
+                : std::max(min_exchange_work, exchange_share * interior_point_work());
+    if (exchange_within(tried)) return outcome;
   } else {
     outcome.result.u = Eigen::VectorXd::Zero(rows.size());
     outcome.result.m = rows.centred_m();
@@ -122,18 +124,13 @@ BoundedQp::Implementation::Outcome BoundedQp::Implementation::solve(const Rows& 
   seconds_interior = watch.lap();
   if (!outcome.result.stopped) return outcome;
   // Without a point that satisfies every constraint, the interior point's own would not either.
-  if (!rows.constraints().inside_u.size()) {
+  if (rows.constraints().inside_u.size() == 0 && tried < max_work_of_exchange) {
     const ExchangeResult before = std::move(outcome.result);
-    settings.max_work = std::max(min_exchange_work, exchange_only_share * interior_point_work());
-    const std::vector<RowKey> base = base_of(rows);
-    outcome.result = exchange.solve(rows, base, settings, context);
-    if (!outcome.result.stopped) {
-      add_base_reactions(energy, rows, base, outcome.result);
+    if (exchange_within(max_work_of_exchange)) {
       add_up(before, outcome.result);
       outcome.method = QpMethod::exchange;
       return outcome;
     }
-    exchange.forget();
     outcome.result = before;
   }
   outcome.relative_gap = point.relative_gap;

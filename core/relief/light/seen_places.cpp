@@ -9,6 +9,7 @@
 
 #include "base/index.h"
 #include "base/parallel.h"
+#include "geometry/mesh/measures.h"
 
 namespace formwright {
 namespace {
@@ -62,20 +63,6 @@ void for_pixels(const PictureView& view, const LitObject& object, Context& conte
 
 int pixels_across(double length_mm, double pixel_mm) {
   return std::max(1, static_cast<int>(std::lround(length_mm / pixel_mm)));
-}
-
-/// Unit, weighted by the areas of the faces around; 0 at a vertex without any.
-Positions vertex_normals(const TriangleMesh& mesh) {
-  Positions normals = Positions::Zero(mesh.V.rows(), 3);
-  for (Eigen::Index f = 0; f < mesh.F.rows(); ++f) {
-    const Vec3 a = mesh.V.row(mesh.F(f, 0)).transpose(), b = mesh.V.row(mesh.F(f, 1)).transpose(),
-               c = mesh.V.row(mesh.F(f, 2)).transpose();
-    const Vec3 doubled_area = (b - a).cross(c - a);
-    for (int k = 0; k < 3; ++k) normals.row(mesh.F(f, k)) += doubled_area.transpose();
-  }
-  for (Eigen::Index i = 0; i < normals.rows(); ++i)
-    if (const double length = normals.row(i).norm(); length > 0) normals.row(i) /= length;
-  return normals;
 }
 
 }  // namespace

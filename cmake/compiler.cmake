@@ -82,7 +82,8 @@ endfunction()
 find_program(CCACHE_PROGRAM ccache)
 if(CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
   set(launcher ${CMAKE_COMMAND} -E env CCACHE_DIR=${FORMWRIGHT_CACHE_DIR}/ccache CCACHE_BASEDIR=${CMAKE_SOURCE_DIR}
-      CCACHE_SLOPPINESS=pch_defines,time_macros CCACHE_PCH_EXTSUM=1)  # cmake/precompiled.cmake
+      CCACHE_SLOPPINESS=pch_defines,time_macros CCACHE_PCH_EXTSUM=1  # cmake/precompiled.cmake
+      CCACHE_DEPEND=1)  # what the compiler lists as read is taken: no run of the preprocessor before it
   if(EMSCRIPTEN)
     list(APPEND launcher CCACHE_COMPILERTYPE=clang CCACHE_COMPILERCHECK=string:${FORMWRIGHT_TOOLCHAIN})
   endif()

@@ -65,12 +65,12 @@ stage() {  # name, runner or -, command...
   fi
 }
 
-# Stories wait for timers and pictures: a build of the lowest priority takes what they leave of the processors. The
+# Tests wait for timers, stories for pictures: a build of the lowest priority takes what they leave of the processors. The
 # kernel shares time among sessions before it looks at niceness (sched(7), autogroup): so the build has a session of its own.
 begin_beside() {  # command...
   BESIDE_COMMAND=("$@")
   BESIDE_START=$SECONDS
-  # Where a session may not choose its share, stories would wait for the compiler: the build comes after them.
+  # Where a session may not choose its share, tests would wait for the compiler: the build comes after them.
   if [ -e /proc/self/autogroup ] && ! setsid sh -c 'echo 19 >/proc/self/autogroup' 2>/dev/null; then return 0; fi
   # The kernel takes one such choice in a tenth of a second.
   # shellcheck disable=SC2016  # the inner shell expands it
@@ -118,8 +118,10 @@ main() {
   stage 'page: types' - npm run types
   stage 'page: lint' - npm run lint
   stage 'native build' - setup/build.sh native
+  begin_beside setup/build.sh wasm
   stage 'native tests' ctest run_ctest native build
-  stage 'WebAssembly build' - setup/build.sh wasm
+  await_beside
+  stage 'WebAssembly build' - show_beside
   stage 'WebAssembly tests' ctest run_ctest wasm build-wasm
   stage 'page: unit tests' vitest npm test
   stage 'page: build' - setup/build.sh web

@@ -16,8 +16,6 @@ namespace {
 
 using boost::asio::use_awaitable;
 
-constexpr std::uintmax_t max_job_bytes = std::uintmax_t{128} << 20;
-
 Json error_of(const std::string& code, const std::string& where, const std::string& message, int number) {
   return {{"error", {{"code", code}, {"where", where}, {"message", message}}}, {"n", number}};
 }
@@ -116,7 +114,7 @@ boost::asio::awaitable<void> MachineRooms::load(RoomHere room, MachineRequest re
     std::error_code status;
     if (!std::filesystem::exists(path, status))
       throw Error(ErrorCode::invalid_input, "sha256", "The job has not arrived: send it again.");
-    const auto job = read_checked_file(path, sha256, "sha256", max_job_bytes);
+    const auto job = read_checked_file(path, sha256, "sha256", max_machine_job_bytes);
     bytes = job->size();
     co_return prepare_job(options, *job);
   };

@@ -17,7 +17,6 @@
 namespace formwright {
 namespace {
 
-constexpr std::uintmax_t max_job_bytes = std::uintmax_t{128} << 20;
 constexpr double farthest_z_jog_mm = 50, z_jog_mm_per_s = 3;
 
 std::vector<std::string> with_driving_flags(std::vector<std::string> flags) {
@@ -100,7 +99,7 @@ int machine_send(const std::vector<std::string>& words, const std::atomic<bool>&
   flags.needed("--job", "--job job.gcode");
   const std::vector<std::string>& files = flags.repeated.at("--job");
   std::vector<std::shared_ptr<const Bytes>> jobs;
-  for (const std::string& file : files) jobs.push_back(read_file(file, "--job", max_job_bytes));
+  for (const std::string& file : files) jobs.push_back(read_file(file, "--job", max_machine_job_bytes));
   const std::string z = flags.value_or("--z", "");
   if (!z.empty() && z != "here" && z != "kept")
     throw Error(ErrorCode::invalid_input, "--z",
@@ -172,7 +171,7 @@ int machine_origin(const std::vector<std::string>& words, const std::atomic<bool
 int machine_frame(const std::vector<std::string>& words, const std::atomic<bool>& interrupted) {
   const MachineFlags flags = read_machine_flags(words, with_driving_flags({"--job"}), {"--yes"});
   const MachineRegistry registry = registry_of(flags);
-  const auto job = read_file(flags.needed("--job", "--job job.gcode"), "--job", max_job_bytes);
+  const auto job = read_file(flags.needed("--job", "--job job.gcode"), "--job", max_machine_job_bytes);
   const Machine machine = driven_machine(registry, flags);
   const auto gcode_bounds = [&] {
     const Json options = driver_options(machine, options_of(flags));

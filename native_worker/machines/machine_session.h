@@ -5,6 +5,7 @@
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <chrono>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -38,6 +39,9 @@ class MachineLock {
 /// The driver options of this machine: `options` of the caller, with controller and speed as registered where they
 /// are absent. Throws Error{invalid_input, "controller"} for one that does not speak over such a port.
 Json driver_options(const Machine& machine, Json options);
+
+/// Of a job file for a machine.
+inline constexpr std::uintmax_t max_machine_job_bytes = std::uintmax_t{128} << 20;
 
 class MachineSession : public std::enable_shared_from_this<MachineSession> {
  public:

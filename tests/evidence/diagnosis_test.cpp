@@ -19,10 +19,32 @@ using Catch::Matchers::WithinAbs;
 
 using evidence_test::ToyModel;
 
+/// Verdict, reading and each cause's probability follow from the same answers, which add up to 1.
+void check_one_answer(const Diagnosis& d) {
+  double sum = 0;
+  for (const Answer& answer : d.answers) sum += answer.probability;
+  CHECK_THAT(sum, WithinAbs(1, 1e-9));
+  const Answer& top = d.answers.front();
+  std::vector<int> verdict = d.verdict;
+  std::sort(verdict.begin(), verdict.end());
+  if (d.reading == Reading::none || d.reading == Reading::unknown) {
+    CHECK(top.causes.empty());
+    CHECK(top.unknown_cause == (d.reading == Reading::unknown));
+  } else {
+    CHECK(top.causes == verdict);
+  }
+  for (const CauseFinding& f : d.causes)
+    CHECK_THAT(f.probability, WithinAbs(probability_of_cause(d.answers, f.cause), 1e-12));
+  for (const FailedCheck& f : d.failed)
+    for (const Answer& answer : d.answers) CHECK(answer.causes != f.causes);
+}
+
 Diagnosis diagnosed(const ToyModel& model) {
   SimulationBag bag(model);
   Context context;
-  return diagnose(bag, {}, context);
+  Diagnosis d = diagnose(bag, {}, context);
+  check_one_answer(d);
+  return d;
 }
 
 TEST_CASE("BoundedStep.IsThatOfTheLinearSystemInsideAndClampsOutside") {
@@ -489,9 +511,11 @@ TEST_CASE("Diagnosis.ReportsAreWholeAndHoldNoStrangeNumbers") {
   const DiagnosisReport report{model, d, {}, std::nullopt, {}, {"A note with <angle> brackets"}};
   const Json json = diagnosis_json(report);
   CHECK(json["verdict"][0] == "bump");
-  double sum = 0;
+  double sum = 0, sum_of_answers = 0;
   for (const Json& h : json["hypotheses"]) sum += h["probability"].get<double>();
   CHECK(sum <= 1 + 1e-9);
+  for (const Json& answer : json["answers"]) sum_of_answers += answer["probability"].get<double>();
+  CHECK_THAT(sum_of_answers, WithinAbs(1, 1e-9));
   CHECK(json.dump().find("null") == std::string::npos);
   const std::string page = diagnosis_page(report);
   CHECK(page.find("A note with &lt;angle&gt; brackets") != std::string::npos);

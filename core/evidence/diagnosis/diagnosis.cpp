@@ -21,6 +21,7 @@ constexpr double max_left =
 constexpr double plain_strength = 2.5;            // half widths of its interval
 constexpr double distinguishable_strength = 1.5;  // the same: with some fourteen causes tried, 5 % for all of them
                                                   // is 2.9 standard deviations of one, not 1.96
+constexpr std::size_t max_failed = 3;             // checks, of answers that fail: more tries find more by chance
 constexpr double min_gain = 0.01;                 // of the held-out error
 constexpr double sure_gain = 0.8;                 // probability that there is one
 constexpr double inseparable_likeness = 0.9;
@@ -58,44 +59,12 @@ class Diagnostician {
                              tried_.discrepancies(), tried_.discrepancy_sensitivities());
   }
 
-  /// The most probable explanation whose causes predict held-out data better than their absence does, all fitted alike.
   void judge() {
     const auto span = context_.span(0.85, 1, "Predicting the held-out data");
     find_causes();
     result_.unexplained_before = tried_.structure_left({});
     result_.extended = result_.base;
-    const std::vector<Eigen::VectorXd> without = predicted(tried_.refit_of({}).fit, {});
-    std::set<std::vector<int>> seen;
-    bool only_structure = false;
-    for (const Hypothesis& h : result_.hypotheses) {
-      if (h.causes.empty()) {
-        only_structure = h.unknown_structure;
-        break;
-      }
-      if (seen.size() >= 3 || h.probability < 1e-3) {
-        only_structure = unknown_over_none() > 0;
-        break;
-      }
-      if (!seen.insert(h.causes).second) continue;
-      result_.trials.push_back({h.causes, tried_.significant(h), {}});
-      if (!result_.trials.back().significant || !predicts_better(h.causes, without)) continue;
-      result_.verdict = h.causes;
-      widen_by_jackknife();
-      if (const std::vector<int> shown = distinguishable_from_zero(h.causes); shown.size() < h.causes.size()) {
-        result_.verdict = shown;
-        // Without the partner that may be nothing.
-        if (!shown.empty()) {
-          seen.insert(shown);
-          result_.trials.push_back({shown, true, {}});
-          if (!predicts_better(shown, without) || distinguishable_from_zero(shown).empty()) result_.verdict.clear();
-        }
-        if (result_.verdict.empty()) continue;
-        widen_by_jackknife();
-      }
-      if (h.unknown_structure) doubt(stays_unexplained);
-      result_.extended = recalibrated(tried_.refit_of(result_.verdict).fit);
-      break;
-    }
+    find_answer();
     widen_by_model();
     const auto before = held_out(result_.base).errors;
     result_.held_out =
@@ -104,7 +73,7 @@ class Diagnostician {
     result_.structure = tried_.nearest_size(result_.unexplained_after);
     measure_structure();
     if (result_.verdict.empty()) {
-      result_.reading = only_structure ? Reading::unknown : Reading::none;
+      result_.reading = result_.answers.front().unknown_cause ? Reading::unknown : Reading::none;
       return;
     }
     std::stable_sort(result_.verdict.begin(), result_.verdict.end(), [&](int a, int b) {
@@ -114,11 +83,75 @@ class Diagnostician {
     find_doubts();
     if (result_.doubtful() && share_explained() < explained_share) result_.reading = Reading::unknown;
     find_twins();
+    if (result_.reading == Reading::unknown) {
+      std::vector<int> causes = result_.verdict;
+      std::sort(causes.begin(), causes.end());
+      fail({causes, {}, Failure::explains_too_little});
+    }
+  }
+
+  /// Checks the most probable answer, until the most probable one has passed or has no causes. The check of an answer
+  /// with causes is the same for all, and against the same fit without any.
+  void find_answer() {
+    weigh_answers();
+    const std::vector<Eigen::VectorXd> without = predicted(tried_.refit_of({}).fit, {});
+    while (!result_.answers.front().causes.empty()) {
+      const Answer top = result_.answers.front();
+      if (result_.failed.size() >= max_failed) {
+        fail_all_others();
+        continue;
+      }
+      if (const std::optional<FailedCheck> failed = check(top.causes, without)) {
+        fail(*failed);
+        continue;
+      }
+      result_.verdict = top.causes;
+      if (top.unknown_cause) doubt(stays_unexplained);
+      result_.extended = recalibrated(tried_.refit_of(result_.verdict).fit);
+      return;
+    }
+  }
+
+  /// Each of `causes` moves points by more than the simulation's own error, together they predict better than none, and
+  /// each is distinguishable from zero. Empty where all hold.
+  std::optional<FailedCheck> check(const std::vector<int>& causes, const std::vector<Eigen::VectorXd>& without) {
+    if (!tried_.is_refitted(causes)) return FailedCheck{causes, {}, Failure::behind_failed};
+    const std::vector<int> large = tried_.causes_that_move(causes, tried_.refit_of(causes).fit.u);
+    result_.trials.push_back({causes, large.size() == causes.size(), {}});
+    if (large.size() < causes.size()) return FailedCheck{causes, large, Failure::too_small};
+    if (!predicts_better(causes, without)) return FailedCheck{causes, {}, Failure::predicts_no_better};
+    widen_by_jackknife(causes);
+    const std::vector<int> shown = distinguishable_from_zero(causes);
+    if (shown.size() == causes.size()) return {};
+    const bool imitated = causes.size() == 1 && !std::isfinite(finding_of(causes.front()).min_visible_strength);
+    return FailedCheck{causes, shown, imitated ? Failure::like_the_material : Failure::near_zero};
+  }
+
+  void weigh_answers() {
+    result_.answers = answers_of(result_.hypotheses, result_.failed);
+    for (CauseFinding& finding : result_.causes)
+      finding.probability = probability_of_cause(result_.answers, finding.cause);
+    std::stable_sort(result_.causes.begin(), result_.causes.end(),
+                     [](const CauseFinding& a, const CauseFinding& b) { return a.probability > b.probability; });
+  }
+
+  void fail(FailedCheck failed) {
+    for (const Hypothesis& h : result_.hypotheses)
+      if (h.causes == failed.causes) failed.fit_probability += h.probability;
+    result_.failed.push_back(std::move(failed));
+    weigh_answers();
+  }
+
+  void fail_all_others() {
+    std::set<std::vector<int>> others;
+    for (const Hypothesis& h : result_.hypotheses)
+      if (!h.causes.empty()) others.insert(h.causes);
+    for (const FailedCheck& failed : result_.failed) others.erase(failed.causes);
+    for (const std::vector<int>& causes : others) fail({causes, {}, Failure::behind_failed});
   }
 
   /// Held-out blocks, with these causes and `without` any; kept in the last trial.
   bool predicts_better(const std::vector<int>& causes, const std::vector<Eigen::VectorXd>& without) {
-    if (!tried_.is_refitted(causes)) return false;
     const ParameterFit& fit = tried_.refit_of(causes).fit;
     const HeldOutGain gain = compare_errors(model_, without, predicted(fit, causes), weights());
     result_.trials.back().gain = gain;
@@ -180,12 +213,12 @@ class Diagnostician {
     return result;
   }
 
-  /// Intervals of the named causes, by what leaving out a quarter of the data changes: that knows of misfits that no
-  /// prior has.
-  void widen_by_jackknife() {
-    const ParameterFit& fit = tried_.refit_of(result_.verdict).fit;
+  /// Intervals of causes that are checked, by what leaving out a quarter of the data changes: that knows of misfits
+  /// that no prior has.
+  void widen_by_jackknife(const std::vector<int>& causes) {
+    const ParameterFit& fit = tried_.refit_of(causes).fit;
     const Eigen::MatrixXd steps = held_out(fit).steps;
-    for (const int cause : result_.verdict) {
+    for (const int cause : causes) {
       CauseFinding& finding = *std::find_if(result_.causes.begin(), result_.causes.end(),
                                             [&](const CauseFinding& f) { return f.cause == cause; });
       const std::vector<int>& own = model_.causes()[static_cast<std::size_t>(cause)].parameters;
@@ -212,7 +245,7 @@ class Diagnostician {
   /// is just visible (two of its standard deviations), and another simulation makes other movements of the same cause.
   void widen_by_model() {
     for (CauseFinding& finding : result_.causes) {
-      if (finding.low == finding.high) continue;  // was not fitted
+      if (!finding.fitted) continue;
       const double half = half_width_with_model(finding);
       finding.low = finding.strength - half;
       finding.high = finding.strength + half;
@@ -222,13 +255,6 @@ class Diagnostician {
     const double misfit = std::isfinite(finding.min_visible_strength) ? 0.5 * finding.min_visible_strength : 0;
     const double gain = 1.96 * model_.causes()[static_cast<std::size_t>(finding.cause)].gain_error * finding.strength;
     return std::sqrt(std::pow(0.5 * (finding.high - finding.low), 2) + misfit * misfit + gain * gain);
-  }
-
-  double unknown_over_none() const {
-    double sum = 0;
-    for (const Hypothesis& h : result_.hypotheses)
-      if (h.causes.empty()) sum += (h.unknown_structure ? 1 : -1) * (h.log_prior + h.log_evidence);
-    return sum;
   }
 
   const CauseFinding& finding_of(int cause) const {
@@ -251,7 +277,6 @@ class Diagnostician {
       const Hypothesis* at = nullptr;
       for (const Hypothesis& h : result_.hypotheses) {
         if (std::find(h.causes.begin(), h.causes.end(), cause) == h.causes.end()) continue;
-        finding.probability += h.probability;
         if (at == nullptr) at = &h;
       }
       finding.log_evidence = at->log_evidence - none;
@@ -268,6 +293,7 @@ class Diagnostician {
         result_.causes.push_back(finding);
         continue;
       }
+      finding.fitted = true;
       const Explanations::Refit& r = tried_.refit_of(at->causes);
       const StructuredObjective objective(model_, tried_.misfit(), tried_.nearest_size(at->structure),
                                           tried_.discrepancies(), tried_.discrepancy_sensitivities());
@@ -296,8 +322,6 @@ class Diagnostician {
       finding.high = finding.strength + half;
       result_.causes.push_back(finding);
     }
-    std::stable_sort(result_.causes.begin(), result_.causes.end(),
-                     [](const CauseFinding& a, const CauseFinding& b) { return a.probability > b.probability; });
   }
 
   /// Causes that do the same as a named one as far as these data go.

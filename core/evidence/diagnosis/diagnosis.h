@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
+#include "evidence/diagnosis/answers.h"
 #include "evidence/fit/held_out.h"
-#include "evidence/fit/hypotheses.h"
 
 namespace formwright {
 
@@ -22,8 +22,9 @@ const char* reading_name(Reading reading);
 
 struct CauseFinding {
   int cause = 0;
-  double probability = 0;                  // that it is at work, by itself or in a pair
+  double probability = 0;                  // that it is at work, by itself or in a pair, as the answers have it
   double strength = 0, low = 0, high = 0;  // Cause::unit; 95 % interval
+  bool fitted = false;                     // else the strength is a linear model's, and the interval has no width
   std::vector<double> values;              // of its parameters
   double min_visible_strength = 0;  // strength that these data would show; infinite where the calibration hides any
   double log_evidence = 0;          // over that of no cause
@@ -44,11 +45,13 @@ struct HeldOutTrial {
 
 struct Diagnosis {
   Reading reading = Reading::none;
-  bool looked_again = false;                // decided on the model's finer self
-  std::vector<std::string> doubts;          // sentences: why what is named may be wrong, or not all
-  std::vector<int> verdict;                 // causes, the strongest first
-  std::vector<CauseFinding> causes;         // all, most probable first
-  std::vector<Hypothesis> hypotheses;       // most probable first
+  bool looked_again = false;           // decided on the model's finer self
+  std::vector<std::string> doubts;     // sentences: why what is named may be wrong, or not all
+  std::vector<int> verdict;            // causes, the strongest first
+  std::vector<Answer> answers;         // most probable first: what verdict, table and sentence follow from
+  std::vector<FailedCheck> failed;     // explanations that fit and are not believed, in the order they were checked
+  std::vector<CauseFinding> causes;    // all, most probable first
+  std::vector<Hypothesis> hypotheses;  // how well each explanation fits, before the checks; the best first
   std::vector<NotSeparable> not_separable;  // of the named causes with any other
   ParameterFit base;                        // calibrated without any effect
   ParameterFit extended;                    // with the named causes; as base where none is

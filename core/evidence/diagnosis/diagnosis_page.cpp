@@ -143,6 +143,65 @@ std::string histogram(const std::vector<double>& before, const std::vector<doubl
   return svg;
 }
 
+constexpr double min_listed = 0.01;  // of a probability: what is less is counted together
+
+/// All answers, so that the column adds up to 100 %.
+std::string answers_table(const DiagnosisReport& report) {
+  std::string html =
+      "<h2>What it may be</h2><div class=\"panel scroll\"><table><tr><th>Answer</th><th>Probability</th><th class=\"n\"></th></tr>";
+  const auto row = [&](const std::string& label, double probability) {
+    html += "<tr><td>" + label + "</td><td><div class=\"bar\"><i style=\"width:" +
+            std::to_string(static_cast<int>(std::lround(100 * probability))) + "%\"></i></div></td><td class=\"n\">" +
+            percent_html(probability) + "</td></tr>";
+  };
+  double others = 0;
+  for (const Answer& answer : report.diagnosis.answers) {
+    if (answer.probability >= min_listed) row(xml_attribute(answer_label(report, answer)), answer.probability);
+    else others += answer.probability;
+  }
+  if (others > 0) row("All other answers", others);
+  return html + "</table></div>";
+}
+
+bool is_listed(const DiagnosisReport& report, const CauseFinding& finding) {
+  const std::vector<int>& verdict = report.diagnosis.verdict;
+  return finding.probability >= min_listed || std::find(verdict.begin(), verdict.end(), finding.cause) != verdict.end();
+}
+
+/// Of the causes that answers name.
+std::string strengths_table(const DiagnosisReport& report) {
+  std::string rows;
+  for (const CauseFinding& f : report.diagnosis.causes) {
+    if (!is_listed(report, f)) continue;
+    const Cause& cause = report.model.causes()[static_cast<std::size_t>(f.cause)];
+    rows += "<tr><td>" + xml_attribute(cause.label) + "</td><td class=\"n\">" + quantity(f.strength, cause.unit) +
+            "</td><td class=\"n\">" +
+            (f.fitted ? figure(f.low, 2) + " to " + figure(f.high, 2) : std::string("not fitted")) + "</td></tr>";
+  }
+  if (rows.empty()) return "";
+  return "<h2>How strong</h2><div class=\"panel scroll\"><table><tr><th>Cause</th><th class=\"n\">Strength</th><th class=\"n\">95 % interval</th></tr>" +
+         rows + "</table></div>";
+}
+
+std::string failed_list(const DiagnosisReport& report) {
+  std::string rows;
+  const auto row = [&](const std::string& label, const std::string& why) {
+    rows += "<tr><td>" + xml_attribute(label) + "</td><td>" + xml_attribute(why) + "</td></tr>";
+  };
+  std::vector<int> said;
+  for (const FailedCheck& f : report.diagnosis.failed) {
+    if (f.failure == Failure::behind_failed) continue;
+    row(answer_label(report, {f.causes, false, 0}), failure_sentence(f.failure));
+    if (f.causes.size() == 1) said.push_back(f.causes.front());
+  }
+  for (const CauseFinding& f : report.diagnosis.causes)
+    if (!is_listed(report, f) && std::find(said.begin(), said.end(), f.cause) == said.end())
+      row(report.model.causes()[static_cast<std::size_t>(f.cause)].label, "It fits worse than the answers above.");
+  if (rows.empty()) return "";
+  return "<details class=\"panel\"><summary>Checked and not needed</summary><table><tr><th>Cause</th><th>Why not</th></tr>" +
+         rows + "</table></details>";
+}
+
 }  // namespace
 
 std::string diagnosis_page(const DiagnosisReport& report) {
@@ -191,16 +250,7 @@ std::string diagnosis_page(const DiagnosisReport& report) {
             (s.what.empty() ? "None of the usual further measurements would tell them apart." : xml_attribute(s.what)) +
             "</p></div>";
   }
-  html +=
-      "<h2>Causes, ranked</h2><div class=\"panel scroll\"><table><tr><th>Cause</th><th>Probability</th><th class=\"n\"></th><th class=\"n\">Strength</th><th class=\"n\">95 % interval</th></tr>";
-  for (const CauseFinding& f : d.causes) {
-    const Cause& cause = model.causes()[static_cast<std::size_t>(f.cause)];
-    html += "<tr><td>" + xml_attribute(cause.label) + "</td><td><div class=\"bar\"><i style=\"width:" +
-            std::to_string(static_cast<int>(std::lround(100 * f.probability))) + "%\"></i></div></td><td class=\"n\">" +
-            percent_html(f.probability) + "</td><td class=\"n\">" + quantity(f.strength, cause.unit) +
-            "</td><td class=\"n\">" + figure(f.low, 2) + " to " + figure(f.high, 2) + "</td></tr>";
-  }
-  html += "</table></div>";
+  html += answers_table(report) + strengths_table(report) + failed_list(report);
 
   const Predictions left = residuals(model, d.base.predictions), left_after = residuals(model, d.extended.predictions);
   std::vector<double> before, after;

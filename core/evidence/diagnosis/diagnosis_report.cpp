@@ -37,6 +37,14 @@ Json structure_json(const ForwardModel& model, const std::vector<StructureTest>&
 
 }  // namespace
 
+std::string answer_label(const DiagnosisReport& report, const Answer& answer) {
+  if (answer.causes.empty()) return answer.unknown_cause ? "A cause that is not in the list" : "Nothing wrong";
+  std::string text;
+  for (const int cause : answer.causes)
+    text += (text.empty() ? "" : " and ") + report.model.causes()[static_cast<std::size_t>(cause)].label;
+  return text + (answer.unknown_cause ? " and something else" : "");
+}
+
 std::string verdict_sentence(const DiagnosisReport& report) {
   const Diagnosis& d = report.diagnosis;
   const auto label = [&](int cause) { return report.model.causes()[static_cast<std::size_t>(cause)].label; };
@@ -72,6 +80,27 @@ Json diagnosis_json(const DiagnosisReport& report) {
   json["doubtful"] = d.doubtful();
   json["doubts"] = d.doubts;
   json["sentence"] = verdict_sentence(report);
+  const auto names = [&](const std::vector<int>& causes) {
+    Json list = Json::array();
+    for (const int cause : causes) list.push_back(name(cause));
+    return list;
+  };
+  json["answers"] = Json::array();
+  for (const Answer& answer : d.answers)
+    json["answers"].push_back({{"causes", names(answer.causes)},
+                               {"unknown_cause", answer.unknown_cause},
+                               {"label", answer_label(report, answer)},
+                               {"probability", answer.probability}});
+  json["failed"] = Json::array();
+  for (const FailedCheck& f : d.failed) {
+    if (f.failure == Failure::behind_failed) continue;
+    json["failed"].push_back({{"causes", names(f.causes)},
+                              {"label", answer_label(report, {f.causes, false, 0})},
+                              {"kept", names(f.kept)},
+                              {"check", failure_name(f.failure)},
+                              {"sentence", failure_sentence(f.failure)},
+                              {"fit_probability", f.fit_probability}});
+  }
   json["causes"] = Json::array();
   for (const CauseFinding& f : d.causes) {
     const Cause& cause = model.causes()[static_cast<std::size_t>(f.cause)];
@@ -84,7 +113,7 @@ Json diagnosis_json(const DiagnosisReport& report) {
                               {"probability", f.probability},
                               {"strength", f.strength},
                               {"unit", cause.unit},
-                              {"interval", interval(f.low, f.high)},
+                              {"interval", f.fitted ? interval(f.low, f.high) : Json()},
                               {"values", values},
                               {"log_evidence", f.log_evidence},
                               {"min_visible_strength", visible},
@@ -94,9 +123,7 @@ Json diagnosis_json(const DiagnosisReport& report) {
   }
   json["trials"] = Json::array();
   for (const HeldOutTrial& trial : d.trials) {
-    Json causes = Json::array();
-    for (const int cause : trial.causes) causes.push_back(name(cause));
-    json["trials"].push_back({{"causes", causes},
+    json["trials"].push_back({{"causes", names(trial.causes)},
                               {"significant", trial.significant},
                               {"gain_share", trial.gain.gain_share},
                               {"gain_interval", interval(trial.gain.gain_low, trial.gain.gain_high)}});
@@ -133,9 +160,7 @@ Json diagnosis_json(const DiagnosisReport& report) {
   json["hypotheses"] = Json::array();
   for (const Hypothesis& h : d.hypotheses) {
     if (json["hypotheses"].size() >= 12) break;
-    Json causes = Json::array();
-    for (const int cause : h.causes) causes.push_back(name(cause));
-    json["hypotheses"].push_back({{"causes", causes},
+    json["hypotheses"].push_back({{"causes", names(h.causes)},
                                   {"unknown_structure", h.unknown_structure},
                                   {"probability", h.probability},
                                   {"log_evidence", h.log_evidence}});

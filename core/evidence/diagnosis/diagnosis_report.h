@@ -24,6 +24,8 @@ struct DiagnosisReport {
 
 /// One sentence: what was found.
 std::string verdict_sentence(const DiagnosisReport& report);
+/// "Nothing wrong", "Uneven heating and Slip", "A cause that is not in the list", ...
+std::string answer_label(const DiagnosisReport& report, const Answer& answer);
 /// "verdict", "reading", "causes", "error_before_mm", ...; docs/evidence.md lists them.
 Json diagnosis_json(const DiagnosisReport& report);
 /// Self-contained HTML: no scripts, no links to anything outside.

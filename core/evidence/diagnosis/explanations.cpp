@@ -318,9 +318,15 @@ double Explanations::movement(int cause, const Eigen::VectorXd& u) const {
   return std::sqrt(squares / std::max(count, 1.0));
 }
 
+std::vector<int> Explanations::causes_that_move(const std::vector<int>& causes, const Eigen::VectorXd& u) const {
+  std::vector<int> moving;
+  for (const int cause : causes)
+    if (movement(cause, u) > min_movement * model_.known_misfit()) moving.push_back(cause);
+  return moving;
+}
+
 bool Explanations::significant(const Hypothesis& h) const {
-  return std::all_of(h.causes.begin(), h.causes.end(),
-                     [&](int cause) { return movement(cause, h.u) > min_movement * model_.known_misfit(); });
+  return causes_that_move(h.causes, h.u).size() == h.causes.size();
 }
 
 }  // namespace formwright

@@ -75,6 +75,13 @@ void PdfDocument::add_page(double width_mm, double height_mm) {
   HPDF_Page_SetHeight(implementation_->page, points(height_mm));
 }
 
+void PdfDocument::add_page(const Vec2& size_mm, double scale, const Vec2& middle_mm) {
+  add_page(size_mm.x(), size_mm.y());
+  const Vec2 shift = size_mm / 2 - scale * middle_mm;
+  HPDF_Page_Concat(implementation_->page, static_cast<HPDF_REAL>(scale), 0, 0, static_cast<HPDF_REAL>(scale),
+                   points(shift.x()), points(shift.y()));
+}
+
 void PdfDocument::show_picture(int picture, double pixel_mm, const PagePlacement& placement, const Vec2& clip_lower_mm,
                                const Vec2& clip_upper_mm) {
   const auto i = static_cast<std::size_t>(picture);

@@ -7,6 +7,17 @@
 
 namespace formwright {
 
+/// How much larger than intended the printer prints: of whatever has such a member.
+template <class Options>
+constexpr auto print_scale_parameter(double Options::*member, std::string_view group) {
+  return parameter(
+             "print_scale", member, "Print too large by", unit::none, -0.2, 0.2,
+             "How much larger than intended the printer prints, as a fraction: 0.01 is 1 %, negative is too small. Measure a long line of a print to know it.")
+      .group(group)
+      .slider(-0.05, 0.05)
+      .advanced();
+}
+
 struct MeasurementEffects {
   static constexpr std::string_view group_title = "Measurement faults";
 
@@ -17,12 +28,7 @@ struct MeasurementEffects {
   double scan_shift_z_mm = 0;
 
   static constexpr auto parameters = std::tuple{
-      parameter(
-          "print_scale", &MeasurementEffects::print_scale, "Print too large by", unit::none, -0.2, 0.2,
-          "How much larger than intended the pattern on the sheet was printed, as a fraction: 0.01 is 1 %, negative is too small.")
-          .group(group_title)
-          .slider(-0.05, 0.05)
-          .advanced(),
+      print_scale_parameter(&MeasurementEffects::print_scale, group_title),
       parameter(
           "scan_scale", &MeasurementEffects::scan_scale, "Scan too large by", unit::none, -0.2, 0.2,
           "How much larger than the object the scan is, as a fraction: 0.01 is 1 %, negative is too small. It grows from the centre of the opening on the plate.")

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 // What thermoform-texture takes beside the simulation's own parameters.
+#include "thermoform/measured/measurement_effects.h"
 #include "thermoform/sheet/thermoform_options.h"
 
 namespace formwright {
@@ -39,6 +40,7 @@ struct ThermoformPrintOptions : ThermoformOptions {
   Paper paper = Paper::sheet;
   double paper_margin_mm = 5;
   double overlap_mm = 10;
+  double print_scale = 0;
   double gap_mm = 1.5;
   SheetProjectionMethod projection = SheetProjectionMethod::nearest;
   double map_edge_mm = 0.7;
@@ -88,6 +90,7 @@ struct ThermoformPrintOptions : ThermoformOptions {
               "Width of the strip that neighbouring pages share, so that they can be glued together. 10 mm is usual.")
               .group("Paper")
               .slider(0, 30),
+          print_scale_parameter(&ThermoformPrintOptions::print_scale, "Paper"),
           parameter(
               "gap_mm", &ThermoformPrintOptions::gap_mm, "Largest gap to colour", unit::mm, 0, 20,
               "Widest gap between model and formed sheet across which colours are still transferred, as in corners that the sheet spans. Larger leaves fewer white places and is less exact.")
@@ -104,6 +107,9 @@ struct ThermoformPrintOptions : ThermoformOptions {
               .group("Print accuracy")
               .slider(0.3, 3)
               .advanced()});
+
+  /// What is sent to the printer, as a multiple of what is to lie on the sheet.
+  double sent_scale() const { return 1 / (1 + print_scale); }
 };
 
 }  // namespace formwright

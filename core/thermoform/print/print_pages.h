@@ -29,9 +29,13 @@ struct PageLayout {
 PageLayout page_layout(const ThermoformPrintOptions& options);
 
 /// All tiles of `picture` (the print without marks, not mirrored), then those of the frame's template where marks are
-/// asked for. Lines and words are vectors.
+/// asked for. Lines and words are vectors. Everything is drawn options.sent_scale() times as large, about the middle of
+/// the page; paper of the sheet's size is, too.
 Bytes write_print_pdf(const Image& picture, const PrintGrid& grid, const PageLayout& layout,
                       const ThermoformPrintOptions& options, Context& context);
+
+/// Pixels per metre for the picture's file: the printer makes them (1 + print_scale) times as large as it is told.
+int sent_per_metre(const PrintGrid& grid, const ThermoformPrintOptions& options);
 
 /// The picture as one file would show it: with marks, and mirrored where asked for.
 Image with_marks(const Image& picture, const PrintGrid& grid, const ThermoformPrintOptions& options);

@@ -4,9 +4,11 @@
 //   confusion_table [--seed N] [--cases N | --repeat N] [--levels 1,0.5,0.25] [--noise 0.05,0.15] [--only CAUSE]
 //   [--mould NAME]
 //                   [--triangles N] [--pairs N] [--no-pairs] [--left-out] [--calibrated] [--unseen] [--verbose]
+//                   [--nearest]
 // --pairs hides two causes at a time, --no-pairs does not look for two, --left-out takes the hidden cause off the list
 // that is asked,
 // --calibrated has a profile of the machine from when it was well; --engine only says which engine answers.
+// --nearest asks the baseline instead: the cause whose sensitivity is nearest to the residual.
 #include <cstdio>
 #include <cstring>
 #include <algorithm>
@@ -16,6 +18,7 @@
 
 #include "evidence/calibration.h"
 #include "evidence/diagnosis/diagnosis.h"
+#include "evidence/nearest_sensitivity.h"
 #include "evidence/virtual_lab.h"
 
 namespace {
@@ -24,14 +27,14 @@ using namespace formwright;
 using namespace formwright::virtual_lab;
 
 /// Raised whenever the diagnosis comes to answer differently: run_confusion_table.py asks older lines again.
-constexpr int engine = 8;
+constexpr int engine = 9;
 
 struct Arguments {
   unsigned seed = 1;
   int repeat = 1, cases = 0;
   std::vector<double> levels{1, 0.5, 0.25}, noise{0.05, 0.15};
   std::string only, mould;
-  bool unseen = false, verbose = false, calibrated = false, pairs_searched = true, left_out = false;
+  bool unseen = false, verbose = false, calibrated = false, pairs_searched = true, left_out = false, nearest = false;
   int pairs = 0, triangles = ThermoformModelOptions{}.triangles;
 };
 
@@ -73,11 +76,18 @@ Json one_case(const std::vector<std::string>& hidden, double level, double sigma
   ThermoformModel model({object}, asked);
   SimulationBag bag(model);
   Context context;
+  Json line;
+  line["seed"] = seed;
+  if (arguments.nearest) {
+    Explanations tried(bag, false, context);
+    tried.calibrate();
+    tried.screen();
+    line["nearest"] = nearest_sensitivities(model, tried);
+    return line;
+  }
   DiagnosisOptions options;
   options.pairs = arguments.pairs_searched;
   const Diagnosis d = diagnose(bag, options, context);
-  Json line;
-  line["seed"] = seed;
   line["engine"] = engine;
   line["mould"] = mould_names[static_cast<int>(mould)];
   line["hidden"] = hidden;
@@ -100,6 +110,13 @@ Json one_case(const std::vector<std::string>& hidden, double level, double sigma
   line["simulations"] = d.simulations;
   line["seconds"] = d.seconds;
   line["looked_again"] = d.looked_again;
+  line["answers"] = Json::array();
+  for (const Answer& answer : d.answers) {
+    if (answer.probability < 0.001) continue;
+    Json names = Json::array();
+    for (const int cause : answer.causes) names.push_back(model.causes()[static_cast<std::size_t>(cause)].name);
+    line["answers"].push_back({names, answer.unknown_cause, answer.probability});
+  }
   Json top = Json::array();
   for (std::size_t i = 0; i < 3; ++i) {
     const CauseFinding& f = d.causes[i];
@@ -185,6 +202,7 @@ int main(int count, char** values) {
     else if (flag == "--left-out") a.left_out = true;
     else if (flag == "--unseen") a.unseen = true;
     else if (flag == "--verbose") a.verbose = true;
+    else if (flag == "--nearest") a.nearest = true;
     else if (flag == "--engine") return std::printf("%d\n", engine), 0;
     else return std::fprintf(stderr, "unknown flag %s\n", flag.c_str()), 2;
   }

@@ -2,10 +2,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The whole confusion table, a process a processor; goes on where it was stopped.
 
-run_confusion_table.py CONFUSION_TABLE RESULTS.jsonl [--repeat N] [--pairs N] [--clean N]
+run_confusion_table.py CONFUSION_TABLE RESULTS.jsonl [--repeat N] [--pairs N] [--clean N] [--nearest NEAREST.jsonl]
 Every cause at three strengths and two noise levels, each left out of the list once, pairs, clean data: what RESULTS has already is not done again, and every
 answer is appended as it comes, and those of an older engine are asked again with their seeds. What is asked of most comes first. Each case is one simulation after the
-other on one processor, two to four minutes; score_confusion_table.py counts what there is."""
+other on one processor, two to four minutes; score_confusion_table.py counts what there is.
+With --nearest the baseline answers the cases that RESULTS has, half a minute each: the cause whose sensitivity is nearest to the residual."""
 import argparse
 import collections
 import json
@@ -47,8 +48,12 @@ def main():
     parser.add_argument("--repeat", type=int, default=3)
     parser.add_argument("--pairs", type=int, default=18)
     parser.add_argument("--clean", type=int, default=18)
+    parser.add_argument("--nearest", type=pathlib.Path)
     a = parser.parse_args()
     lines = [json.loads(line) for line in a.results.read_text().splitlines()] if a.results.exists() else []
+    if a.nearest:
+        ask(a.program, nearest_cases(lines, a.nearest), a.nearest)
+        return
     engine = int(subprocess.run([a.program, "--engine"], capture_output=True, text=True, check=True).stdout)
     done = collections.Counter()
     older = collections.defaultdict(list)  # seeds of answers to ask for again
@@ -71,13 +76,26 @@ def main():
             todo.append((unused, flags))
             unused += 1
     print(f"{sum(line.get('engine', 1) == engine for line in lines)} done, {len(todo)} to do", flush=True)
+    ask(a.program, todo, a.results)
+
+
+def nearest_cases(lines, results):
+    """Those with one cause or none of the whole list, that the baseline has not answered."""
+    done = {json.loads(line)["seed"] for line in results.read_text().splitlines()} if results.exists() else set()
+    latest = {line["seed"]: line for line in lines if "error" not in line and len(line["hidden"]) < 2 and not line.get("left_out")}
+    return [(seed // 1000, ["--only", (line["hidden"] or ["none"])[0], "--levels", str(line["level"]), "--noise", str(line["sigma_mm"]), "--nearest"])
+            for seed, line in sorted(latest.items()) if seed not in done and seed % 1000 == 1]
+
+
+def ask(program, todo, results):
+    """Seeds with their flags, a process a processor; answers are appended as they come."""
     lock = threading.Lock()
     queue = iter(todo)
 
     def work(processor):
         for seed, flags in iter(lambda: next_of(queue, lock), None):
-            answer = subprocess.run(["taskset", "-c", str(processor), a.program, "--seed", str(seed), *flags], capture_output=True, text=True).stdout
-            with lock, a.results.open("a") as out:
+            answer = subprocess.run(["taskset", "-c", str(processor), program, "--seed", str(seed), *flags], capture_output=True, text=True).stdout
+            with lock, results.open("a") as out:
                 out.write(answer)
 
     threads = [threading.Thread(target=work, args=(p,)) for p in os.sched_getaffinity(0)]

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Counts the lines of confusion_table and lists them: score_confusion_table.py FILE... [--engine N] prints docs/confusion_table.md.
+"""Counts the lines of confusion_table and lists them: score_confusion_table.py FILE... [--engine N] [--nearest FILE] prints docs/confusion_table.md.
 
 Of every case the newest engine's answer counts, or that of engine N.
 A hidden cause is visible if it is stronger than `min_visible_strength`, which the diagnosis states without knowing the truth."""
@@ -9,11 +9,9 @@ import collections
 import json
 import statistics
 
+from counted_shares import share
+
 named_level = {1: "strong", 0.5: "medium", 0.25: "weak"}
-
-
-def share(part, whole):
-    return f"{len(part)} of {len(whole)}" + (f" ({100 * len(part) / len(whole):.0f} %)" if whole else "")
 
 
 def visible(case):
@@ -24,8 +22,16 @@ def right(case):
     return case["first"] == case["hidden"][0]
 
 
+def names_wrongly(case):
+    return is_named(case) and not set(case["verdict"]) <= set(case["hidden"])
+
+
+def is_named(case):
+    return case["reading"] in ("cause", "cannot_separate")
+
+
 def wrong_without_doubt(case):
-    return case["reading"] == "cause" and not case["doubtful"] and not set(case["verdict"]) <= set(case["hidden"])
+    return case["reading"] == "cause" and not case["doubtful"] and names_wrongly(case)
 
 
 def number(value):
@@ -44,6 +50,68 @@ def answer(case):
 def inside(case):
     name, _, strength, low, high = case["causes"][0]
     return abs(abs(strength) - case["strength"][0]) <= (high - low) / 2
+
+
+def by_mould(cases, clean):
+    """Every case counts, whether its cause can show in its data or not."""
+    levels = sorted({c["level"] for c in cases}, reverse=True)
+    print("\n## Named first, all cases\n\nNo case is left out: causes that these data cannot show count as missed. Intervals are 95 %.\n")
+    print("| mould | " + " | ".join(named_level.get(level, str(level)) for level in levels) + " | nothing hidden: an alarm |")
+    print("|---|" + "---|" * (len(levels) + 1))
+    rows = [(mould, lambda c, mould=mould: c["mould"] == mould) for mould in sorted({c["mould"] for c in cases + clean})]
+    rows += [(f"noise {sigma} mm", lambda c, sigma=sigma: c["sigma_mm"] == sigma) for sigma in sorted({c["sigma_mm"] for c in cases})]
+    rows += [("all", lambda c: True)]
+    for label, belongs in rows:
+        cells = []
+        for level in levels:
+            asked = [c for c in cases if c["level"] == level and belongs(c)]
+            cells.append(share([c for c in asked if right(c)], asked))
+        quiet = [c for c in clean if belongs(c)]
+        cells.append(share([c for c in quiet if c["reading"] != "none"], quiet))
+        print(f"| {label} | " + " | ".join(cells) + " |")
+
+
+def doubts(cases):
+    """Of what is named with and without doubt, how much is wrong."""
+    print("\n## Is doubt right?\n\nOf the answers that name a cause, the share that names one that was not hidden.\n")
+    print("| answers | in doubt: wrong | without doubt: wrong |\n|---|---|---|")
+    rows = [(mould, lambda c, mould=mould: c["mould"] == mould) for mould in sorted({c["mould"] for c in cases})]
+    rows += [(f"noise {sigma} mm", lambda c, sigma=sigma: c["sigma_mm"] == sigma) for sigma in sorted({c["sigma_mm"] for c in cases})]
+    rows += [("all", lambda c: True)]
+    for label, belongs in rows:
+        cells = []
+        for doubtful in (True, False):
+            asked = [c for c in cases if is_named(c) and bool(c["doubtful"]) == doubtful and belongs(c)]
+            cells.append(share([c for c in asked if names_wrongly(c)], asked))
+        print(f"| {label} | " + " | ".join(cells) + " |")
+
+
+def baselines(cases, clean, nearest):
+    """The cause whose sensitivity is nearest to the residual, and a discrepancy field without causes."""
+    print("\n## Baselines\n")
+    asked = [c for c in cases if c["seed"] in nearest]
+    quiet = [c for c in clean if c["seed"] in nearest]
+    if asked and quiet:
+        # It has no answer "nothing": it gets the threshold of its cosine that raises as many alarms as the diagnosis does.
+        alarms = sum(c["reading"] != "none" for c in quiet)
+        threshold = sorted((nearest[c["seed"]][0][1] for c in quiet), reverse=True)[alarms]
+        first = lambda c: nearest[c["seed"]][0]
+        print("*Nearest sensitivity*: the cause whose effect points most nearly along the residual of the calibrated simulation, in the same metric and beside the same material. "
+              f"It has no answer \"nothing\"; above a cosine of {threshold:.2f} it gives as many alarms on clean data as the diagnosis.\n")
+        print("| cases | diagnosis | nearest sensitivity | with that threshold |\n|---|---|---|---|")
+        rows = [(named_level.get(level, str(level)), lambda c, level=level: c["level"] == level) for level in sorted({c["level"] for c in asked}, reverse=True)]
+        rows += [(mould, lambda c, mould=mould: c["mould"] == mould) for mould in sorted({c["mould"] for c in asked})]
+        for label, belongs in rows + [("all", lambda c: True)]:
+            of = [c for c in asked if belongs(c)]
+            named = [c for c in of if first(c)[0] == c["hidden"][0]]
+            print(f"| {label} | {share([c for c in of if right(c)], of)} | {share(named, of)} | {share([c for c in named if first(c)[1] > threshold], of)} |")
+    tried = [(c, trial) for c in cases for trial in c["trials"] if trial[0] == "+".join(sorted(c["verdict"])) and len(c["verdict"]) == 1 and trial[2] > 0]
+    if tried:
+        fall = statistics.median(1 - trial[3] / trial[2] for _, trial in tried)
+        better = [t for t in tried if t[1][3] < t[1][2]]
+        print(f"\n*A discrepancy field and no causes*: on the blocks that were left out, the named cause and the field together predict better than the field alone in {share(better, cases)} of all cases. "
+              f"Their error is {100 * fall:.0f} % lower there (median). In the others no cause is named, and both are the same; no cause is named that fails this comparison. "
+              "On another object a field has nothing to say: its error there is that of the calibrated simulation.")
 
 
 def hidden(case):
@@ -66,6 +134,7 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("files", nargs="+")
     parser.add_argument("--engine", type=int)
+    parser.add_argument("--nearest", help="answers of the baseline (run_confusion_table.py --nearest)")
     a = parser.parse_args()
     answers = [json.loads(line) for name in a.files for line in open(name) if line.startswith("{")]
     latest = {}
@@ -91,7 +160,13 @@ Causes were hidden in virtual objects and diagnosed. `score_confusion_table.py` 
 - *Another object* is the mean error on an object that the diagnosis did not see, before and after the simulation is extended.
 """)
     print(f"{len(cases)} cases, by the engine that answered: " + ", ".join(f"{engine}: {count}" for engine, count in sorted(by_engine.items())) + ".\n")
-    print("| count | result |\n|---|---|")
+    by_mould(single, clean)
+    doubts([c for c in cases if not c["left_out"]])
+    nearest = {}
+    if a.nearest:
+        nearest = {line["seed"]: line["nearest"] for line in map(json.loads, open(a.nearest)) if "nearest" in line}
+    baselines(single, clean, nearest)
+    print("\n## Counts\n\n| count | result |\n|---|---|")
     for level in sorted({c["level"] for c in single}, reverse=True):
         for sigma in sorted({c["sigma_mm"] for c in single}):
             shown = [c for c in single if c["level"] == level and c["sigma_mm"] == sigma and visible(c)]

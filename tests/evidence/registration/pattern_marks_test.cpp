@@ -5,21 +5,12 @@
 #include <random>
 
 #include "base/error.h"
-#include "evidence/registration/calibration_pattern.h"
 #include "evidence/registration/corner_marks.h"
+#include "evidence/registration/small_pattern.h"
 
 namespace formwright {
 namespace {
-
-CalibrationPattern small_pattern() {
-  CalibrationPatternOptions options;
-  options.sheet_x_mm = 120;
-  options.sheet_y_mm = 130;
-  options.clamp_opening_x_mm = 106;
-  options.clamp_opening_y_mm = 116;
-  options.coarsest_mm = 20;
-  return make_calibration_pattern(options);
-}
+using test::small_pattern;
 
 TEST_CASE("CalibrationPattern.ItsDescriptionDrawsItAgain") {
   const CalibrationPattern pattern = small_pattern();

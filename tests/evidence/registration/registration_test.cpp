@@ -4,6 +4,7 @@
 #include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include "base/error.h"
+#include "evidence/registration/small_pattern.h"
 #include "evidence/registration/virtual_scan.h"
 #include "geometry/samples/samples.h"
 #include "thermoform/forming.h"
@@ -15,17 +16,8 @@ using Catch::Matchers::WithinAbs;
 
 using test::recovered_error;
 using test::RecoveredError;
+using test::small_pattern;
 using test::virtual_scan;
-
-CalibrationPattern small_pattern() {
-  CalibrationPatternOptions options;
-  options.sheet_x_mm = 120;
-  options.sheet_y_mm = 130;
-  options.clamp_opening_x_mm = 106;
-  options.clamp_opening_y_mm = 116;
-  options.coarsest_mm = 20;
-  return make_calibration_pattern(options);
-}
 
 ScanRegistrationOptions small_options() {
   ScanRegistrationOptions options;

@@ -2,9 +2,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Our prints in other programs: Pillow for pictures, poppler for pages.
 
-other_readers.py PRINT_TOOL PAPER MIRROR. Exits with 77 (skipped, for CTest) and a reason where a program is not
+other_readers.py PRINT_TOOL PAPER MIRROR PRINT_SCALE. Exits with 77 (skipped, for CTest) and a reason where a program is not
 installed. Checks sizes in pixels and mm, where the picture lies on every page, that the pages put together are the
-picture again, that marks lie where they are said to, and what is written on the pages.
+picture again, that marks lie where they are said to, and what is written on the pages. PRINT_SCALE is how much too large the printer prints:
+what it makes of the files has to be of the sheet's size again.
 """
 import json
 import pathlib
@@ -50,11 +51,14 @@ def matrices(pdf):
 def check_png(folder, expected, image_module):
     for name in ("print.png", "picture.png"):
         image = image_module.open(folder / name)
+        # Half a pixel of the picture, and half a pixel per metre that a file cannot state.
+        tolerances = [(510 + 0.5 * side) / expected["per_metre"] for side in expected["sheet_mm"]]
+        printed = 1 + expected["print_scale"] if name == "print.png" else 1
         if list(image.size) != expected["pixels"] or image.mode != "RGB":
             sys.exit(f"{name} is {image.size} {image.mode}")
         for k in range(2):
-            near(f"resolution of {name}", image.info["dpi"][k], expected["per_metre"] * 0.0254, 0.01)
-            near(f"size of {name} in mm", image.size[k] / image.info["dpi"][k] * 25.4, expected["sheet_mm"][k], 0.51 * 1000 / expected["per_metre"])
+            near(f"resolution of {name}", image.info["dpi"][k], expected["per_metre"] * 0.0254 * printed, 0.02)
+            near(f"size of {name} in mm", image.size[k] / image.info["dpi"][k] * 25.4 * printed, expected["sheet_mm"][k], tolerances[k])
     image = image_module.open(folder / "print.png")
     sign = -1 if expected["mirrored"] else 1
     for mark in expected["marks"]:
@@ -74,7 +78,7 @@ def check_pages(folder, expected, image_module):
         sys.exit(f"{len(sizes)} pages, should be {2 * len(tiles)}")
     for size in sizes:
         for k in range(2):
-            near("page size in mm", float(size[k]) / POINTS_PER_MM, expected["page_mm"][k], 0.01)
+            near("page size in mm", float(size[k]) / POINTS_PER_MM, expected["page_mm"][k] * page_scale(expected), 0.01)
     placed = matrices(pdf)
     if len(placed) != len(tiles):
         sys.exit(f"{len(placed)} pictures are placed, should be {len(tiles)}")
@@ -92,7 +96,7 @@ def check_pages(folder, expected, image_module):
         words = line.split()
         if [int(words[3]), int(words[4])] != expected["pixels"] or words[5] != "rgb":
             sys.exit(f"pdfimages finds {line}")
-        near("dots per inch", float(words[12]), expected["per_metre"] * 0.0254, 1)
+        near("dots per inch", float(words[12]), expected["per_metre"] * 0.0254 * (1 + expected["print_scale"]), 1)
     text = run("pdftotext", "-raw", pdf, "-")
     words = ["FRONT"] + (["MIRRORED"] if expected["mirrored"] else [])
     # Words that lie across two pages are cut.
@@ -105,27 +109,37 @@ def check_pages(folder, expected, image_module):
     reassemble(folder, expected, image_module)
 
 
+def page_scale(expected):
+    """Paper of the sheet's size is as much smaller as what is drawn on it; other paper is not."""
+    of_the_sheet = expected["page_mm"] == expected["sheet_mm"]
+    return 1 / (1 + expected["print_scale"]) if of_the_sheet else 1
+
+
 def reassemble(folder, expected, image_module):
     """Draws every page and puts the tiles side by side: inside the opening, where there are no marks, it is the picture."""
-    run("pdftoppm", "-r", DOTS_PER_INCH, "-png", "-l", len(expected["tiles"]), folder / "print.pdf", folder / "page")
+    run("pdftoppm", "-r", DOTS_PER_INCH * (1 + expected["print_scale"]), "-png", "-l", len(expected["tiles"]), folder / "print.pdf", folder / "page")
     picture = image_module.open(folder / "picture.png").convert("RGB")
     pages = sorted(folder.glob("page-*.png"))
     scale = DOTS_PER_INCH / 25.4
+    dot_mm = 1 / scale  # what a tile's edge cuts through is on the neighbouring tile, too
     seen = bytearray(picture.width * picture.height)
     wrong = compared = 0
     for tile, path in zip(expected["tiles"], pages):
         page = image_module.open(path).convert("RGB")
         page_pixels, picture_pixels = page.load(), picture.load()
+        # The page's middle, which no scale of the printer moves, on the paper that comes out of it and in what was drawn.
+        printed_mm = [side * page_scale(expected) * (1 + expected["print_scale"]) / 2 for side in expected["page_mm"]]
+        drawn_mm = [side / 2 for side in expected["page_mm"]]
         for y in range(0, picture.height, 2):
             y_mm = (picture.height / 2 - y - 0.5) * 1000 / expected["per_metre"]
-            if not max(tile["lower_mm"][1], -118) < y_mm < min(tile["upper_mm"][1], 118):
+            if not max(tile["lower_mm"][1] + dot_mm, -118) < y_mm < min(tile["upper_mm"][1] - dot_mm, 118):
                 continue
-            v = int(page.height - (tile["origin_mm"][1] + y_mm) * scale)
+            v = int(page.height - (printed_mm[1] + tile["origin_mm"][1] + y_mm - drawn_mm[1]) * scale)
             for x in range(y % 3, picture.width, 3):
                 x_mm = (x + 0.5 - picture.width / 2) * 1000 / expected["per_metre"]
-                if not max(tile["lower_mm"][0], -108) < x_mm < min(tile["upper_mm"][0], 108):
+                if not max(tile["lower_mm"][0] + dot_mm, -108) < x_mm < min(tile["upper_mm"][0] - dot_mm, 108):
                     continue
-                found = page_pixels[int((tile["origin_mm"][0] + x_mm) * scale), v]
+                found = page_pixels[int((printed_mm[0] + tile["origin_mm"][0] + x_mm - drawn_mm[0]) * scale), v]
                 own = picture_pixels[x, y]
                 # Poppler's dots are not ours: equal where the picture is plain about a point.
                 around = [picture_pixels[min(max(x + dx, 0), picture.width - 1), min(max(y + dy, 0), picture.height - 1)] for dx in (-2, 2) for dy in (-2, 2)]
@@ -148,7 +162,7 @@ def reassemble(folder, expected, image_module):
 
 
 def main():
-    if len(sys.argv) != 4:
+    if len(sys.argv) != 5:
         sys.exit(__doc__)
     try:
         from PIL import Image  # pylint: disable=import-outside-toplevel
@@ -163,7 +177,7 @@ def main():
             sys.exit(77)
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        expected = json.loads(run(sys.argv[1], folder, sys.argv[2], sys.argv[3]))
+        expected = json.loads(run(sys.argv[1], folder, *sys.argv[2:]))
         check_png(folder, expected, Image)
         check_pages(folder, expected, Image)
 

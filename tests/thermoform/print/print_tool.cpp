@@ -22,10 +22,11 @@ void save(const std::string& path, const formwright::Bytes& bytes) {
 
 int main(int argc, char** argv) {
   using namespace formwright;
-  if (argc != 4) return 2;
+  if (argc != 5) return 2;
   const std::string folder = argv[1], paper = argv[2];
   ThermoformPrintOptions options;
   options.mirror = std::atoi(argv[3]) != 0;
+  options.print_scale = std::atof(argv[4]);
   for (std::size_t i = 0; i < EnumNames<Paper>::names.size(); ++i)
     if (EnumNames<Paper>::names[i] == paper) options.paper = static_cast<Paper>(i);
   options.dots_per_inch = 150;
@@ -36,7 +37,8 @@ int main(int argc, char** argv) {
   const FormedSheet sheet = cone.sheet(30, 64);
   const TexturePrint print = make_texture_print(model, model.mesh, sheet, std::nullopt, options, context);
   const PageLayout layout = page_layout(options);
-  save(folder + "/print.png", write_png(with_marks(print.picture, print.grid, options), print.grid.per_metre, context));
+  save(folder + "/print.png",
+       write_png(with_marks(print.picture, print.grid, options), sent_per_metre(print.grid, options), context));
   save(folder + "/print.pdf", write_print_pdf(print.picture, print.grid, layout, options, context));
   save(folder + "/formed.glb", formed_picture(sheet, print, 512, context));
   Image picture = print.picture;
@@ -58,6 +60,7 @@ int main(int argc, char** argv) {
                      {"page_mm", {layout.width_mm, layout.height_mm}},
                      {"tiles", tiles},
                      {"marks", marks},
+                     {"print_scale", options.print_scale},
                      {"mirrored", options.mirror}})
             << "\n";
   return 0;

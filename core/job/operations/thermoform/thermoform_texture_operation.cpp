@@ -2,6 +2,7 @@
 #include "job/contract/operation_options.h"
 #include "job/operations/thermoform/thermoform_operations.h"
 
+#include "base/format.h"
 #include "formats/mesh_io.h"
 #include "imaging/picture/picture_reader.h"
 #include "imaging/picture/png_writer.h"
@@ -121,9 +122,10 @@ void report_print(Json& report, const TexturePrint& print, const PageLayout& lay
   const auto area = [&](Coverage c) { return print.area_mm2[static_cast<std::size_t>(c)]; };
   const double pixel_mm = print.grid.pixel_mm();
   report["sheet_mm"] = {options.sheet_x_mm, options.sheet_y_mm};
-  report["picture_mm"] = {print.grid.width * pixel_mm, print.grid.height * pixel_mm};
+  report["picture_mm"] = {print.grid.width * pixel_mm * options.sent_scale(),
+                          print.grid.height * pixel_mm * options.sent_scale()};
   report["picture_pixels"] = {print.grid.width, print.grid.height};
-  report["dots_per_inch"] = 25.4 / pixel_mm;
+  report["dots_per_inch"] = sent_per_metre(print.grid, options) * 0.0254;
   report["colours_used"] = EnumNames<PrintColours>::names.at(static_cast<std::size_t>(print.colours));
   const bool has_template = options.marks && !registration_marks(options).empty();
   report["pages"] = layout.tiles.size() * (has_template ? 2 : 1);
@@ -149,7 +151,10 @@ void report_print(Json& report, const TexturePrint& print, const PageLayout& lay
 }
 
 OperationResult run_texture(const OperationCall& call, const Json& given) {
-  const auto options = read_parameters<ThermoformPrintOptions>(merged_parameters(call, given));
+  Json parameters = merged_parameters(call, given);
+  if (const auto profile = machine_profile(call); profile && !given.contains("print_scale"))
+    parameters["print_scale"] = profile->measurement.print_scale;
+  const auto options = read_parameters<ThermoformPrintOptions>(parameters);
   Context& context = call.context;
   // What can be refused at once is, before a simulation.
   const PageLayout layout = page_layout(options);
@@ -178,6 +183,11 @@ OperationResult run_texture(const OperationCall& call, const Json& given) {
   report_print(report, print, layout, options);
   std::vector<std::string> sentences = formed.placement.notes;
   sentences.insert(sentences.end(), print.sentences.begin(), print.sentences.end());
+  if (options.print_scale != 0)
+    sentences.push_back("The files are " + with_max_decimals(100 * std::abs(1 - options.sent_scale()), 2) + " % " +
+                        (options.print_scale > 0 ? "smaller" : "larger") +
+                        " than the sheet, because the printer prints too " +
+                        (options.print_scale > 0 ? "large." : "small."));
   report["sentences"] = sentences;
 
   watch.lap();
@@ -188,7 +198,8 @@ OperationResult run_texture(const OperationCall& call, const Json& given) {
     context.check_cancelled();
   };
   if (call.wants("print.png"))
-    add("print.png", write_png(with_marks(print.picture, print.grid, options), print.grid.per_metre, context));
+    add("print.png",
+        write_png(with_marks(print.picture, print.grid, options), sent_per_metre(print.grid, options), context));
   context.progress(0.9);
   if (call.wants("print.pdf")) add("print.pdf", write_print_pdf(print.picture, print.grid, layout, options, context));
   context.progress(0.95);

@@ -4,46 +4,40 @@ import { useSignal } from '@preact/signals';
 import { useId } from 'preact/hooks';
 import { Icon, formatNumber, withUnit } from '../../ui';
 import type { Cause, Diagnosis } from './diagnosis';
-import { formatEstimate, oddsAgainstNone, percent, readingWords } from './diagnosis';
+import { formatEstimate, minListed, oddsAgainstNone, percent, readingWords } from './diagnosis';
 import type { EvidenceSession } from './evidence_session';
 import { comparing } from './evidence_document';
 
-const shownCauses = 3;
-
 export function Causes({ session, diagnosis }: { session: EvidenceSession; diagnosis: Diagnosis }) {
-  const all = useSignal(false);
-  const { causes, reading, named, alike } = diagnosis;
+  const { answers, causes, reading, named, alike } = diagnosis;
   const words = readingWords(diagnosis);
-  const certain = causes.filter(({ name, probability }) => named.includes(name) && probability > 0.995);
-  // Where nothing is wrong, a list of causes with figures would look as if something were.
-  const shown = reading === 'none' ? 0 : shownCauses;
-  const listed = all.value ? causes : causes.slice(0, shown);
-  const rest = causes.length - listed.length;
+  const shown = causes.filter(({ name, probability }) => named.includes(name) || probability >= minListed);
   return (
     <section class="section causes" aria-label="Causes of the difference">
       <h3>Causes of the difference</h3>
       {reading === 'none' || reading === 'unknown' ? <p class="reading">{diagnosis.sentence}</p> : null}
       {words ? <p>{words}</p> : null}
-      {certain.length > 1 ? <p>Found together, each almost certain.</p> : null}
+      {answers.length > 0 ? (
+        <ol class="answers" aria-label="What it may be">
+          {answers.map(({ label, probability }) => (
+            <li key={label}>
+              <span class="cause-line">
+                <span>{label}</span>
+                <b>{percent(probability)}</b>
+              </span>
+              <span class="progress" aria-hidden="true">
+                <i style={{ width: `${100 * probability}%` }} />
+              </span>
+            </li>
+          ))}
+        </ol>
+      ) : null}
       <ol>
-        {listed.map((cause) => (
+        {shown.map((cause) => (
           <CauseCard key={cause.name} session={session} cause={cause} named={named.includes(cause.name)} />
         ))}
-        {diagnosis.unlisted >= 0.005 && reading !== 'none' ? (
-          <li class="cause unlisted">
-            <span class="cause-line">
-              A cause that is not in the list <b>{percent(diagnosis.unlisted)}</b>
-            </span>
-          </li>
-        ) : null}
       </ol>
-      {rest > 0 ? (
-        <button type="button" class="text-button" onClick={() => (all.value = true)}>
-          {reading === 'none' ? 'Checked and not needed: ' : 'Show '}
-          {rest} {reading === 'none' ? '' : 'less likely '}
-          {rest === 1 ? 'cause' : 'causes'}
-        </button>
-      ) : null}
+      <NotNeeded diagnosis={diagnosis} shown={shown} />
       {alike
         .filter(({ measurement }) => measurement !== '')
         .map(({ labels, measurement }) => (
@@ -55,10 +49,48 @@ export function Causes({ session, diagnosis }: { session: EvidenceSession; diagn
   );
 }
 
+/** What was checked and is not believed: folded, without figures that would look as if something were wrong. */
+function NotNeeded({ diagnosis, shown }: { diagnosis: Diagnosis; shown: readonly Cause[] }) {
+  const open = useSignal(false);
+  const id = useId();
+  const failedAlone = diagnosis.failed
+    .filter(({ causes }) => causes.length === 1)
+    .flatMap(({ causes }) => causes);
+  const rest = diagnosis.causes.filter(
+    ({ name }) => !failedAlone.includes(name) && !shown.some((one) => one.name === name),
+  );
+  const rows = [
+    ...diagnosis.failed,
+    ...rest.map(({ label }) => ({ label, why: 'It fits worse than the answers above.' })),
+  ];
+  if (rows.length === 0) return null;
+  return (
+    <>
+      <button
+        type="button"
+        class="text-button"
+        aria-expanded={open.value}
+        aria-controls={id}
+        onClick={() => (open.value = !open.value)}
+      >
+        <Icon name={open.value ? 'chevronDown' : 'chevronRight'} small /> Checked and not needed:{' '}
+        {rows.length}
+      </button>
+      <dl id={id} class="not-needed" hidden={!open.value}>
+        {rows.map(({ label, why }) => (
+          <div key={label}>
+            <dt>{label}</dt>
+            <dd>{why}</dd>
+          </div>
+        ))}
+      </dl>
+    </>
+  );
+}
+
 function CauseCard({ session, cause, named }: { session: EvidenceSession; cause: Cause; named: boolean }) {
   const open = useSignal(false);
   const id = useId();
-  const probability = percent(cause.probability);
   return (
     <li class={named ? 'cause named' : 'cause'}>
       <button
@@ -67,15 +99,7 @@ function CauseCard({ session, cause, named }: { session: EvidenceSession; cause:
         aria-controls={id}
         onClick={() => (open.value = !open.value)}
       >
-        <span class="cause-line">
-          <strong>{cause.label}</strong>
-          <b>{probability}</b>
-        </span>
-        {named ? (
-          <span class="progress" aria-hidden="true">
-            <i style={{ width: `${100 * cause.probability}%` }} />
-          </span>
-        ) : null}
+        <strong>{cause.label}</strong>
         <span class="cause-line">
           <span>
             <Icon name={open.value ? 'chevronDown' : 'chevronRight'} small /> Strength

@@ -7,6 +7,13 @@ const report: Report = {
   verdict: ['heating_gradient'],
   reading: 'cannot_separate',
   sentence: 'Uneven heating, 60 %.',
+  answers: [
+    { causes: ['heating_gradient'], unknown_cause: false, label: 'Uneven heating', probability: 0.6 },
+    { causes: ['thickness_wedge'], unknown_cause: false, label: 'Wedge', probability: 0.388 },
+    { causes: [], unknown_cause: true, label: 'A cause that is not in the list', probability: 0.008 },
+    { causes: [], unknown_cause: false, label: 'Nothing wrong', probability: 0.004 },
+  ],
+  failed: [{ causes: ['weak_vacuum'], label: 'Vacuum too weak', sentence: 'It would fit, but.' }],
   causes: [
     {
       name: 'heating_gradient',
@@ -51,7 +58,19 @@ describe('a diagnosis', () => {
     expect(diagnosis.gains[0]?.after).toEqual({ value: 0.14, low: 0.1, high: 0.2 });
     expect(diagnosis.gains[1]?.after).toEqual({ value: 0.5, low: 0.5, high: 0.5 });
     expect(diagnosis.sigma_mm.get('lamp')).toBe(0.08);
-    expect(diagnosis.unlisted).toBe(0.03);
+  });
+
+  it('has answers that add up to 1, and says what failed a check', () => {
+    const diagnosis = readDiagnosis(report);
+    expect(diagnosis.answers.map(({ label }) => label)).toEqual([
+      'Uneven heating',
+      'Wedge',
+      'All other answers',
+    ]);
+    expect(diagnosis.answers.reduce((sum, { probability }) => sum + probability, 0)).toBeCloseTo(1, 12);
+    expect(diagnosis.failed).toEqual([
+      { label: 'Vacuum too weak', causes: ['weak_vacuum'], why: 'It would fit, but.' },
+    ]);
   });
 
   it('says in words what looks alike and what would tell', () => {

@@ -15,10 +15,18 @@ export interface Cause {
   readonly name: string;
   readonly label: string;
   readonly probability: number;
+  /** Without an interval where the cause was not fitted. */
   readonly strength: Estimate;
   readonly unit: string;
   readonly values: Readonly<Record<string, number>>;
   readonly remedy: string;
+}
+
+/** What may be wrong; the probabilities of all answers add up to 1. */
+interface Answer {
+  readonly label: string;
+  readonly causes: readonly string[];
+  readonly probability: number;
 }
 
 export interface Gain {
@@ -34,10 +42,16 @@ type Reading = 'none' | 'cause' | 'cannot_separate' | 'unknown';
 export interface Diagnosis {
   readonly reading: Reading;
   readonly sentence: string;
+  /** The most probable first; those too small to list are one. */
+  readonly answers: readonly Answer[];
+  /** Causes that would fit but failed a check, and why. */
+  readonly failed: readonly {
+    readonly label: string;
+    readonly causes: readonly string[];
+    readonly why: string;
+  }[];
   readonly causes: readonly Cause[];
   readonly named: readonly string[];
-  /** That something explains the data which is not in the list. */
-  readonly unlisted: number;
   /** Pairs that look alike, with the measurement that would tell. */
   readonly alike: readonly { readonly labels: readonly string[]; readonly measurement: string }[];
   readonly gains: readonly Gain[];
@@ -76,6 +90,22 @@ function gainOf(source: JsonObject, title: string, detail: string): Gain {
   };
 }
 
+/** Probabilities below this are counted together. */
+export const minListed = 0.01;
+
+function answersOf(report: Report): Answer[] {
+  const all = list(report['answers']).map((answer) => ({
+    label: text(answer['label']),
+    causes: sentences(answer, 'causes'),
+    probability: number(answer['probability']),
+  }));
+  const listed = all.filter(({ probability }) => probability >= minListed);
+  const others = all
+    .filter(({ probability }) => probability < minListed)
+    .reduce((sum, { probability }) => sum + probability, 0);
+  return others > 0 ? [...listed, { label: 'All other answers', causes: [], probability: others }] : listed;
+}
+
 export function readDiagnosis(report: Report): Diagnosis {
   const causes = list(report['causes']).map((cause) => ({
     name: text(cause['name']),
@@ -97,11 +127,14 @@ export function readDiagnosis(report: Report): Diagnosis {
   return {
     reading: (text(report['reading']) || 'none') as Reading,
     sentence: text(report['sentence']),
+    answers: answersOf(report),
+    failed: list(report['failed']).map((one) => ({
+      label: text(one['label']),
+      causes: sentences(one, 'causes'),
+      why: text(one['sentence']),
+    })),
     causes,
     named: sentences(report, 'verdict').filter((name) => causes.some((cause) => cause.name === name)),
-    unlisted: list(report['hypotheses'])
-      .filter((one) => one['unknown_structure'] === true && sentences(one, 'causes').length === 0)
-      .reduce((sum, one) => sum + number(one['probability']), 0),
     alike: list(report['not_separable']).map((pair) => ({
       labels: sentences(pair, 'causes').map(labelOf),
       measurement: text(pair['measurement']),
@@ -132,7 +165,7 @@ export function readingWords({ reading, alike }: Pick<Diagnosis, 'reading' | 'al
     case 'none':
       return 'Nothing to fix: the remaining error is as small as the measuring noise. The simulation with the calibrated material can be used as it is.';
     case 'unknown':
-      return 'The measured sheet differs in a systematic way that none of the known causes explains. The most similar cause is listed first; look for other causes.';
+      return 'The measured sheet differs in a systematic way that none of the known causes explains. Look for other causes.';
     case 'cannot_separate': {
       const labels = alike[0]?.labels ?? [];
       return labels.length === 2

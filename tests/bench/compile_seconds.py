@@ -26,7 +26,7 @@ def seconds_of(command: dict) -> tuple[str, int, float]:
     if status != 0:
         sys.exit(f"{object_of(command)} does not compile: build the folder first")
     source = pathlib.Path(command["file"])
-    files = len(re.findall("^#include", source.read_text(), re.M)) if source.name.startswith("unity_") else 1
+    files = len(re.findall("^#include", source.read_text(), re.M)) if source.parent.name == "groups" else 1
     target = re.search(r"([^/]+)\.dir/", object_of(command)).group(1)
     return target, files, usage.ru_utime + usage.ru_stime
 

@@ -2,7 +2,7 @@
 #pragma once
 // The mould on its rising base plate, as an obstacle for points of the sheet. A point that would end a step nearer than
 // half the sheet's thickness gets the velocity that ends the step at that distance; along the surface it is held back
-// by Coulomb friction with the same momentum (Taylor and Flanagan 1989, PRONTO 3D, "kinematic contact"). Nothing holds
+// by Coulomb friction with the same momentum ([TF89], kinematic contact). Nothing holds
 // a point that is pulled off.
 #include <Eigen/Core>
 

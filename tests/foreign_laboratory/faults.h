@@ -1,24 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// What may be wrong with the machine, the sheet, the print or the scan. Every strength is of physics; here is how it
-// relates to the parameter of the same meaning in core/thermoform (docs/thermoform.md, "What a real machine adds").
+// What may be wrong with the machine, the sheet, the print or the scan. How a strength relates to the parameter of the
+// same meaning in core/thermoform (docs/thermoform.md, "What a real machine adds"):
 //
-// | fault              | strength here                         | parameter there                                        |
-// |--------------------|---------------------------------------|--------------------------------------------------------|
-// | heating_gradient   | kelvin colder at the opening's edge   | direction alone; `stiffness_ratio` of polymer.h gives  |
-// |                    | than in its middle, in x and y        | the factor on stiffness after one second               |
-// | heating_centre     | kelvin colder in the corners than on  | direction alone, likewise                              |
-// |                    | average, the middle as much hotter    |                                                        |
-// | slip               | 1 / coefficient of Coulomb friction   | the same number; other rules of sticking               |
-// | anisotropy         | Young's modulus along x times 1 + a   | the same along x; along y a little less than 1 - a     |
-// | thickness_wedge    | relative slope over half the opening  | the same number                                        |
-// | cooling            | W/(m^2 K) to a mould of 293 K         | direction alone: only what touches chills              |
-// | weak_vacuum        | share of the vacuum lost              | the same number; here the pump's final vacuum          |
-// | clamp_slip         | mm/s that a rim pulled by 1 N/mm      | direction alone: `clamp_feed_mm` of the result is the  |
-// |                    | more than the clamp holds comes in    | mean way of the rim, unevenly along the sides          |
-// | mould_shift, _rotation, _scale             | mm, degrees, share | the same numbers                                 |
-// | print_scale, scan_scale, scan_shift        | share, share, mm   | the same numbers                                 |
-// | print_stretch      | print too long along y alone, share   | none: no cause of the list                             |
+// The same number with the same meaning: slip (1 / Coulomb's coefficient, by other rules of sticking), thicker_right
+// and thicker_back (thickness_wedge), vacuum_lost (weak_vacuum; here of the pump's final vacuum), mould_shift,
+// mould_rotation, mould_scale, print_scale, scan_scale, scan_shift.
+// Nearly: anisotropy. Young's modulus along x is 1 + a times the mean, along y a little more than 1 - a.
+// The direction alone:
+// - heating_gradient, heating_centre: here in kelvin. stiffness_ratio() gives the factor on stiffness after one second.
+// - cooling: here the heat that a mould of 293 K takes from what touches it. Nothing cools beside the contact, where
+//   the project has a reach of 10 mm, so that even water-cooled metal moves little.
+// - clamp_slip: here a speed for each N/mm of pull. `clamp_feed_mm` of the result is the mean movement of the rim,
+//   which is uneven along the sides.
+// None: print_stretch, a cause of no list.
 #include <array>
 #include <random>
 #include <string>
@@ -29,19 +24,19 @@
 namespace formwright::foreign_laboratory {
 
 struct Faults {
-  double colder_right_k = 0, colder_back_k = 0;
-  double colder_corners_k = 0;
+  double colder_right_k = 0, colder_back_k = 0;  // at the opening's edge, than in its middle
+  double colder_corners_k = 0;                   // than on average; the middle is as much hotter
   double slip = 0;
   double anisotropy = 0;
   double thicker_right = 0, thicker_back = 0;
-  double contact_w_per_m2_k = 0;  // beside what the machine in order has
+  double contact_w_per_m2_k = 0;  // cooling, beside that of the machine in order
   double vacuum_lost = 0;
-  double clamp_mm2_per_n_s = 0;
+  double clamp_mm2_per_n_s = 0;  // mm/s for each N/mm beyond what the clamp holds
   double mould_shift_x_mm = 0, mould_shift_y_mm = 0;
   double mould_rotation_deg = 0;
   double mould_scale = 0;
   double print_scale = 0;
-  double print_stretch = 0;
+  double print_stretch = 0;  // the print is too long along y alone
   double scan_scale = 0;
   double scan_shift_x_mm = 0, scan_shift_y_mm = 0, scan_shift_z_mm = 0;
 };

@@ -8,7 +8,7 @@
 
 #include "foreign_laboratory/air.h"
 #include "foreign_laboratory/contact.h"
-#include "foreign_laboratory/sheet_motion.h"
+#include "foreign_laboratory/sheet/sheet_motion.h"
 
 namespace formwright::foreign_laboratory {
 namespace {
@@ -148,8 +148,8 @@ class Forming {
     std::vector<double> inside(touched_.size(), 0);
     for (int cell = 0; cell < grid.cell_count(); ++cell) {
       const std::array<int, 4> corners = grid.corners(cell);
-      if (std::none_of(corners.begin(), corners.end(), [&](int node) { return touched_[static_cast<std::size_t>(node)]; }))
-        continue;
+      const auto touched = [&](int node) { return touched_[static_cast<std::size_t>(node)] != 0; };
+      if (std::none_of(corners.begin(), corners.end(), touched)) continue;
       const double mm = inside_of_cell(cell, motion_.place(), thickness_);
       for (const int node : corners)
         inside[static_cast<std::size_t>(node)] = std::max(inside[static_cast<std::size_t>(node)], mm);
@@ -206,7 +206,8 @@ class Forming {
     int rim = 0;
     for (int node = 0; node < grid.node_count(); ++node) {
       if (!grid.on_rim(node)) {
-        sheet.inside_node_mm = std::max(sheet.inside_node_mm, inside(sheet.place_mm.col(node), sheet.thickness_mm[node]));
+        const double mm = inside(sheet.place_mm.col(node), sheet.thickness_mm[node]);
+        sheet.inside_node_mm = std::max(sheet.inside_node_mm, mm);
         continue;
       }
       feed += (sheet.place_mm.col(node).head<2>() - grid.flat_mm(node)).norm();

@@ -32,7 +32,8 @@ double asymmetry_mm(const FormedSheet& sheet, Eigen::Index axis) {
   double worst = 0;
   for (int j = 0; j <= grid.cells_y; ++j)
     for (int i = 0; i <= grid.cells_x; ++i) {
-      Vector3d mirrored = sheet.place_mm.col(axis == 0 ? grid.node(grid.cells_x - i, j) : grid.node(i, grid.cells_y - j));
+      const int opposite = axis == 0 ? grid.node(grid.cells_x - i, j) : grid.node(i, grid.cells_y - j);
+      Vector3d mirrored = sheet.place_mm.col(opposite);
       mirrored[axis] = -mirrored[axis];
       worst = std::max(worst, (sheet.place_mm.col(grid.node(i, j)) - mirrored).norm());
     }
@@ -115,7 +116,7 @@ TEST_CASE("Forming.FaultsChangeWhatTheyAreNamedAfter") {
   const auto of_sides = [](const FormedSheet& sheet) {
     double right = 0, left = 0;
     for (int node = 0; node < sheet.grid.node_count(); ++node)
-      (sheet.grid.flat_mm(node).x() > 0 ? right : left) += sheet.thickness_mm[node] * (sheet.grid.flat_mm(node).x() != 0);
+      if (const double x = sheet.grid.flat_mm(node).x(); x != 0) (x > 0 ? right : left) += sheet.thickness_mm[node];
     return right / left;
   };
   CHECK_THAT(of_sides(clean), WithinRel(1, 1e-6));

@@ -111,7 +111,8 @@ TEST_CASE("Measurement.HalfTheLevelIsHalfTheFault") {
     const auto strong = values_of(draw_faults(cause, 1, first)), medium = values_of(draw_faults(cause, 0.5, second));
     REQUIRE(strong.size() == medium.size());
     REQUIRE_FALSE(strong.empty());
-    for (std::size_t k = 0; k < strong.size(); ++k) CHECK_THAT(medium[k].second, WithinRel(0.5 * strong[k].second, 1e-12));
+    for (std::size_t k = 0; k < strong.size(); ++k)
+      CHECK_THAT(medium[k].second, WithinRel(0.5 * strong[k].second, 1e-12));
   }
 }
 

@@ -16,7 +16,7 @@ namespace {
 using Eigen::Vector3d;
 using Edge = std::pair<int, int>;
 
-/// From outside inwards by the distance itself, which never goes too far (Hart 1996, sphere tracing), then halving.
+/// From outside inwards by the distance itself, which never goes too far (sphere tracing [Har96]), then halving.
 Vector3d on_surface(Mould mould, const Vector3d& direction) {
   constexpr double outside_mm = 150;
   double far = outside_mm, near = 0;
@@ -93,7 +93,7 @@ class Refinement {
     return true;
   }
 
-  /// A triangle that is divided is divided across its longest edge, too, so that angles stay bounded (Rivara 1984).
+  /// A triangle that is divided is divided across its longest edge, too, so that angles stay bounded [Riv84].
   void divide_longest() {
     for (bool any = true; any;) {
       any = false;

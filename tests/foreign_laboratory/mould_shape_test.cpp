@@ -52,7 +52,9 @@ TEST_CASE("MouldShape.TheNearestPointIsOnTheSurfaceAlongTheGradient") {
     CHECK(distance_to(mould, place + step).mm <= d.mm + step.norm() + 1e-12);
   }
   CHECK(outside > 1000);
-  CHECK_THAT(distance_to(mould, Vector3d(0, 0, 80)).mm, WithinAbs(80 - mould_height_mm(mould), mould == Mould::bumps ? 5 : 1e-9));
+  const double above = distance_to(mould, Vector3d(0, 0, 80)).mm;
+  if (mould == Mould::bumps) CHECK(above > 80 - mould_height_mm(mould));  // the highest bump is beside the middle
+  else CHECK_THAT(above, WithinAbs(80 - mould_height_mm(mould), 1e-9));
 }
 
 TEST_CASE("MouldMesh.IsClosedAndWithinItsChordErrorOfTheFormula") {

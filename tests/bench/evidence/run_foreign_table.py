@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Forms objects in the foreign laboratory and diagnoses them, one line of JSON each; continues where it was stopped.
 
-run_foreign_table.py FOREIGN_LABORATORY FORMWRIGHT RESULTS.jsonl [--seeds N] [--noise MM] [--points N] [--folder DIR] [--jobs N] [--only CAUSE] [--mould NAME]
+run_foreign_table.py FOREIGN_LABORATORY FORMWRIGHT RESULTS.jsonl [--seeds N] [--noise MM] [--points N] [--folder DIR] [--jobs N] [--pairs]
+                     [--only CAUSE] [--mould NAME]
 
 A round is one clean sheet of each mould and every cause once, strong; its seed decides which mould a cause is tried on, before anything is computed.
 Cases that RESULTS has are not done again, nor are failures hidden: they are lines with "error"."""
@@ -29,7 +30,12 @@ def cases(moulds, causes, seeds):
         first = 100 * (turn + 1)
         clean = [(first + k, mould, "none", 1.0) for k, mould in enumerate(moulds)]
         # Moulds follow each other in another order in every round, so that a cause meets each of them.
-        faulty = [(first + 20 + k, moulds[(k + turn * 5) % len(moulds)], cause, 1.0) for k, cause in enumerate(causes)]
+        faulty = []
+        for k, cause in enumerate(causes):
+            mould = moulds[(k + turn * 5) % len(moulds)]
+            if cause == "mould_rotation" and mould in ("dome", "cone"):  # bodies of revolution do not show it
+                mould = "box"
+            faulty.append((first + 20 + k, mould, cause, 1.0))
         while clean or faulty:
             yield from faulty[:3]
             yield from clean[:1]
@@ -45,7 +51,7 @@ def run(command):
 
 def diagnosed(a, seed, mould, cause, level, folder):
     """One line: the hidden truth, what the diagnosis said and how long both took."""
-    line = {"seed": seed, "mould": mould, "cause": cause, "level": level, "noise_mm": a.noise, "points": a.points}
+    line = {"seed": seed, "mould": mould, "cause": cause, "level": level, "noise_mm": a.noise, "points": a.points, "pairs": a.pairs}
     item = folder / f"{mould}_{cause}_{seed}"
     try:
         start = time.monotonic()
@@ -55,7 +61,7 @@ def diagnosed(a, seed, mould, cause, level, folder):
         truth = json.loads((item / "truth.json").read_text())
         line |= {"in_the_list": truth["in_the_list"], "strength": truth["values"], "movement_mean_mm": truth["movement_mean_mm"]}
         start = time.monotonic()
-        run([a.formwright, "evidence-diagnose", "--object", str(item), "--out", str(item / "report")])
+        run([a.formwright, "evidence-diagnose", "--object", str(item), "--out", str(item / "report"), "--separate", "off", "--pairs", "on" if a.pairs else "off"])
         line["seconds_diagnosing"] = round(time.monotonic() - start, 1)
         found = json.loads((item / "report" / "diagnosis.json").read_text())
         line |= {key: found[key] for key in ("verdict", "reading", "doubtful", "doubts", "error_before_mm", "error_after_mm", "noise_floor_mm", "unexplained_before_mm",
@@ -78,14 +84,15 @@ def main():
     parser.add_argument("--points", type=int, default=2000)
     parser.add_argument("--folder", type=pathlib.Path, help="keeps the objects and reports here")
     parser.add_argument("--jobs", type=int, default=1, help="cases at a time")
+    parser.add_argument("--pairs", action="store_true", help="also looks for two causes at once, which takes twice as long")
     parser.add_argument("--only", help="this cause alone, or none")
     parser.add_argument("--mould", help="this mould alone")
     a = parser.parse_args()
     moulds, causes = names(a.laboratory)
     lines = [json.loads(line) for line in a.results.read_text().splitlines()] if a.results.exists() else []
-    done = {(line["seed"], line["mould"], line["cause"], line["level"], line["noise_mm"], line["points"]) for line in lines if "error" not in line}
+    done = {(line["seed"], line["mould"], line["cause"], line["level"], line["noise_mm"], line["points"], line["pairs"]) for line in lines if "error" not in line}
     todo = [case for case in cases(moulds, causes, a.seeds)
-            if (*case, a.noise, a.points) not in done and a.only in (None, case[2]) and a.mould in (None, case[1])]
+            if (*case, a.noise, a.points, a.pairs) not in done and a.only in (None, case[2]) and a.mould in (None, case[1])]
     print(f"{len(done)} done, {len(todo)} to do", flush=True)
     lock = threading.Lock()
 

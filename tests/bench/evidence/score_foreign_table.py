@@ -10,7 +10,7 @@ import statistics
 
 
 def wilson(hits, count):
-    """95 % interval of a share (Wilson 1927), which holds for few cases, too."""
+    """95 % interval of a share [Wil27], which holds for few cases, too."""
     if count == 0:
         return 0.0, 1.0
     z = 1.959964
@@ -83,7 +83,7 @@ def main():
     for name in a.files:
         with open(name) as file:
             for line in map(json.loads, filter(str.strip, file)):
-                latest[line["seed"], line["mould"], line["cause"], line["level"], line["noise_mm"], line["points"]] = line
+                latest[line["seed"], line["mould"], line["cause"], line["level"], line["noise_mm"], line["points"], line["pairs"]] = line
     cases = sorted(latest.values(), key=lambda c: (c["cause"], c["mould"], c["seed"]))
     strong = [c for c in cases if c["level"] == 1]
     moulds = sorted({c["mould"] for c in cases})

@@ -1,27 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "foreign_laboratory/membrane.h"
+#include "foreign_laboratory/sheet/membrane.h"
 
-#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
+#include "foreign_laboratory/sheet/membrane_shape.h"
+
 namespace formwright::foreign_laboratory {
-namespace {
 
-using Four = Eigen::Array4d;
-using Vector4 = std::array<Four, 3>;
-
-// Gauss points of a cell from -1 to 1 in both directions, in the order of its corners.
-const double gauss = 1 / std::sqrt(3.0);
-const Four low_x = 0.5 * (1 - Four(-gauss, gauss, gauss, -gauss)), high_x = 1 - low_x;
-const Four low_y = 0.5 * (1 - Four(-gauss, -gauss, gauss, gauss)), high_y = 1 - low_y;
-const std::array<Four, 4> corner_weight = {low_x * low_y, high_x* low_y, high_x* high_y, low_x* high_y};
-
-Vector4 cross(const Vector4& a, const Vector4& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-}  // namespace
+using namespace membrane_detail;
 
 bool Grid::on_rim(int node) const {
   const int i = node % (cells_x + 1), j = node / (cells_x + 1);
@@ -38,15 +25,6 @@ std::array<int, 4> Grid::corners(int cell) const {
   const int first = node(cell % cells_x, cell / cells_x);
   return {first, first + 1, first + cells_x + 2, first + cells_x + 1};
 }
-
-/// Deformation gradient (its two columns) and what follows from it, at the Gauss points of a cell.
-struct Membrane::Shape {
-  Vector4 along_x, along_y, area;  // area: the cross product of the columns
-  Four cxx, cxy, cyy, zz;          // C; its component across the sheet, 1/det
-  Tensor inverse;                  // C^-1
-  std::array<int, 4> corner;
-  Four height;
-};
 
 Membrane::Membrane(const Grid& grid, const Polymer& polymer, const FlatSheet& flat) : grid_(grid), polymer_(polymer) {
   if (grid.cells_x < 1 || grid.cells_y < 1 || !(grid.width_mm > 0) || !(grid.length_mm > 0))
@@ -92,26 +70,6 @@ Membrane::Membrane(const Grid& grid, const Polymer& polymer, const FlatSheet& fl
       for (std::size_t k = 0; k < 2; ++k) chains.relaxing[k] = chains_at_rest(polymer.relaxing_modulus_mpa[k]);
     }
   }
-}
-
-Membrane::Shape Membrane::shape_of(int cell, const Points& x) const {
-  Shape s;
-  s.corner = grid_.corners(cell);
-  const double per_x = 1 / grid_.spacing_x_mm(), per_y = 1 / grid_.spacing_y_mm();
-  const auto a = x.col(s.corner[0]), b = x.col(s.corner[1]), c = x.col(s.corner[2]), d = x.col(s.corner[3]);
-  for (Eigen::Index k = 0; k < 3; ++k) {
-    s.along_x[static_cast<std::size_t>(k)] = low_y * ((b[k] - a[k]) * per_x) + high_y * ((c[k] - d[k]) * per_x);
-    s.along_y[static_cast<std::size_t>(k)] = low_x * ((d[k] - a[k]) * per_y) + high_x * ((c[k] - b[k]) * per_y);
-  }
-  s.cxx = s.along_x[0] * s.along_x[0] + s.along_x[1] * s.along_x[1] + s.along_x[2] * s.along_x[2];
-  s.cxy = s.along_x[0] * s.along_y[0] + s.along_x[1] * s.along_y[1] + s.along_x[2] * s.along_y[2];
-  s.cyy = s.along_y[0] * s.along_y[0] + s.along_y[1] * s.along_y[1] + s.along_y[2] * s.along_y[2];
-  const Four determinant = s.cxx * s.cyy - s.cxy * s.cxy;
-  s.zz = 1 / determinant;
-  s.inverse = {s.cyy * s.zz, -s.cxy * s.zz, s.cxx * s.zz, determinant};
-  s.area = cross(s.along_x, s.along_y);
-  s.height = a[2] * corner_weight[0] + b[2] * corner_weight[1] + c[2] * corner_weight[2] + d[2] * corner_weight[3];
-  return s;
 }
 
 void Membrane::update_step(Cell& cell) const {
@@ -270,83 +228,6 @@ void Membrane::advance(const Points& x, double pressure_mpa, Points& force) {
 void Membrane::forces(const Points& x, double pressure_mpa, Points& force) const {
   force.setZero(3, grid_.node_count());
   for (int c = 0; c < grid_.cell_count(); ++c) add_forces(c, shape_of(c, x), pressure_mpa, force);
-}
-
-double Membrane::energy_mj(const Points& x) const {
-  double sum = 0;
-  for (int c = 0; c < grid_.cell_count(); ++c) {
-    const Shape s = shape_of(c, x);
-    const Cell& cell = cells_[static_cast<std::size_t>(c)];
-    const Tensor t = total(cell);
-    Four density = 0.5 * (t.xx * s.cxx + 2 * t.xy * s.cxy + t.yy * s.cyy + t.zz * s.zz);
-    if (!chains_.empty()) {
-      const Chains& chains = chains_[static_cast<std::size_t>(c)];
-      const Four& squared_stretch = chains_along_x_ ? s.cxx : s.cyy;
-      const Four square = chains.lasting.square + chains.relaxing[0].square + chains.relaxing[1].square;
-      const Four stretch = chains.lasting.stretch + chains.relaxing[0].stretch + chains.relaxing[1].stretch;
-      density += 0.5 * square * squared_stretch + stretch / squared_stretch.sqrt();
-    }
-    sum += (cell.volume_mm3 * density).sum();
-  }
-  return sum;
-}
-
-double Membrane::max_squared_frequency(const Points& x) const {
-  // The second variation of the energy density by a displacement u with gradient g is at most |u|^2 g (X + 3 p C^-1) g,
-  // plus y + 2 z/stretch^3 for chains along one direction. A cell's shape functions have at most
-  // max(4/hx^2, 4/hy^2, 4/3 (1/hx^2 + 1/hy^2)) of squared gradient for a unit of lumped mass.
-  const double per_x = 1 / (grid_.spacing_x_mm() * grid_.spacing_x_mm());
-  const double per_y = 1 / (grid_.spacing_y_mm() * grid_.spacing_y_mm());
-  const double gradient = std::max({4 * per_x, 4 * per_y, 4.0 / 3 * (per_x + per_y)});
-  double largest = 0;
-  for (int c = 0; c < grid_.cell_count(); ++c) {
-    const Shape s = shape_of(c, x);
-    const Cell& cell = cells_[static_cast<std::size_t>(c)];
-    const Tensor t = total(cell);
-    const Four across = 3 * s.zz * t.zz;
-    Four xx = t.xx + across * s.inverse.xx, yy = t.yy + across * s.inverse.yy;
-    const Four xy = t.xy + across * s.inverse.xy;
-    if (!chains_.empty()) {
-      const Chains& chains = chains_[static_cast<std::size_t>(c)];
-      const Four& squared_stretch = chains_along_x_ ? s.cxx : s.cyy;
-      const Four square = chains.lasting.square + chains.relaxing[0].square + chains.relaxing[1].square;
-      const Four stretch = chains.lasting.stretch + chains.relaxing[0].stretch + chains.relaxing[1].stretch;
-      (chains_along_x_ ? xx : yy) += square + 2 * stretch / (squared_stretch * squared_stretch.sqrt());
-    }
-    const Four stiffest = 0.5 * (xx + yy) + (0.25 * (xx - yy).square() + xy.square()).sqrt();
-    // The lumped mass takes the cell's mean thickness, the stiffness that of each point.
-    const double uneven = cell.volume_mm3.maxCoeff() / cell.volume_mm3.mean();
-    largest = std::max(largest, stiffest.maxCoeff() * uneven);
-  }
-  return largest * gradient / polymer_.density_t_per_mm3;
-}
-
-Eigen::VectorXd Membrane::thickness_mm(const Points& x) const {
-  Eigen::VectorXd sum = Eigen::VectorXd::Zero(grid_.node_count()), count = sum;
-  const double area = grid_.spacing_x_mm() * grid_.spacing_y_mm() / 4;
-  for (int c = 0; c < grid_.cell_count(); ++c) {
-    const Shape s = shape_of(c, x);
-    const double mean = (cells_[static_cast<std::size_t>(c)].volume_mm3 / area * s.zz.sqrt()).mean();
-    for (const int node : s.corner) sum[node] += mean, count[node] += 1;
-  }
-  return sum.cwiseQuotient(count);
-}
-
-double Membrane::mean_stress_mpa(const Points& x) const {
-  double sum = 0, volume = 0;
-  for (int index = 0; index < grid_.cell_count(); ++index) {
-    const Shape s = shape_of(index, x);
-    Four sxx, sxy, syy;
-    second_piola_kirchhoff(index, s, sxx, sxy, syy);
-    // F S F^T has the eigenvalues of S C, whose trace and determinant these are.
-    const Four trace = sxx * s.cxx + 2 * sxy * s.cxy + syy * s.cyy;
-    const Four determinant = (sxx * syy - sxy * sxy) / s.zz;
-    const Four larger = 0.5 * trace + (0.25 * trace.square() - determinant).max(0).sqrt();
-    const Cell& cell = cells_[static_cast<std::size_t>(index)];
-    sum += (cell.volume_mm3 * larger).sum();
-    volume += cell.volume_mm3.sum();
-  }
-  return sum / volume;
 }
 
 }  // namespace formwright::foreign_laboratory

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "foreign_laboratory/polymer.h"
+#include "foreign_laboratory/sheet/polymer.h"
 
 #include <algorithm>
 #include <cmath>

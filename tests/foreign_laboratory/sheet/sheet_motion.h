@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// The membrane's motion by central differences (Belytschko, Liu, Moran, Elkhodary 2014, box 6.1): forces at the end of
+// The membrane's motion by central differences ([BLME14], box 6.1): forces at the end of
 // a step give the velocity in the middle of the next. Masses may be larger than the sheet's, which makes steps longer;
 // weight is the sheet's own.
 #include <vector>
 
-#include "foreign_laboratory/membrane.h"
+#include "foreign_laboratory/sheet/membrane.h"
 
 namespace formwright::foreign_laboratory {
 
 inline constexpr double gravity_mm_per_s2 = 9810;
 
 struct MotionSettings {
-  double mass_scale = 1;        // inertia over that of the sheet
-  double damping_per_s = 0;     // force minus this times mass times velocity
+  double mass_scale = 1;         // inertia over that of the sheet
+  double damping_per_s = 0;      // force minus this times mass times velocity
   double gravity_mm_per_s2 = 0;  // downwards
-  double step_share = 0.8;      // of the largest stable step
+  double step_share = 0.8;       // of the largest stable step
 };
 
 class SheetMotion {
@@ -54,7 +54,7 @@ class SheetMotion {
   MotionSettings& settings() { return settings_; }
   Points& place() { return place_; }
   const Points& place() const { return place_; }
-  Points& velocity() { return velocity_; }  // in the middle of the last step
+  Points& velocity() { return velocity_; }        // in the middle of the last step
   const Points& force() const { return force_; }  // at the end of the last step, of stress and pressure
   double step_s() const { return step_s_; }
   double time_s() const { return time_s_; }

@@ -3,18 +3,18 @@
 // An incompressible membrane of bilinear quadrilaterals with 2 x 2 Gauss points, in large strain.
 //
 // Stress. A network of shear modulus mu whose chains formed in the shapes C(s) of the past carries the second
-// Piola-Kirchhoff stress S = X - p C^-1, X = mu times the mean of C(s)^-1 over the chains (Lodge 1964, ch. 6; for
+// Piola-Kirchhoff stress S = X - p C^-1, X = mu times the mean of C(s)^-1 over the chains ([Lod64], ch. 6; for
 // chains that never break X = mu I, the neo-Hookean solid). p follows from plane stress: S_33 = 0, C_33 = 1/det C.
-// Chains that break after tau and form again make X' = (mu C^-1 - X)/tau. The recursion of Taylor, Pister and Goudreau
-// (1970) is exact where C^-1 changes linearly within a step. A sheet that grows stiffer by cooling gains
-// chains in its present shape, which carry no stress until it changes again.
+// Chains that break after tau and form again make X' = (mu C^-1 - X)/tau. The recursion of [TPG70] is exact where C^-1
+// changes linearly within a step. A sheet that grows stiffer by cooling gains chains in its present shape, which carry
+// no stress until it changes again.
 #include <Eigen/Core>
 #include <array>
 #include <functional>
 #include <span>
 #include <vector>
 
-#include "foreign_laboratory/polymer.h"
+#include "foreign_laboratory/sheet/polymer.h"
 
 namespace formwright::foreign_laboratory {
 
@@ -65,7 +65,7 @@ class Membrane {
   /// Mass of the nodes (a fourth of each cell around) in tonnes.
   const Eigen::VectorXd& mass_t() const { return mass_t_; }
   /// Largest squared angular frequency (1/s^2) that the membrane can have at `x` with these masses, from above: the
-  /// largest of any cell alone (Flanagan and Belytschko 1984).
+  /// largest of any cell alone [FB84].
   double max_squared_frequency(const Points& x) const;
   /// Thickness at the nodes: the mean of the Gauss points around.
   Eigen::VectorXd thickness_mm(const Points& x) const;

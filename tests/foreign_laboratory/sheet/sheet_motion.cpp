@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "foreign_laboratory/sheet_motion.h"
+#include "foreign_laboratory/sheet/sheet_motion.h"
 
 #include <cmath>
 #include <stdexcept>
@@ -30,7 +30,8 @@ void SheetMotion::begin_step() {
   constexpr int steps_between_checks = 50;
   steps_until_check_ = steps_between_checks;
   const double squared = membrane_.max_squared_frequency(place_) / settings_.mass_scale;
-  if (!std::isfinite(squared)) throw std::runtime_error("The sheet's shape is no longer finite: use a smaller step_share");
+  if (!std::isfinite(squared))
+    throw std::runtime_error("step_share: the sheet's shape is no longer finite; give a smaller share");
   // 2/omega is the largest stable step of central differences. The step has a margin, so that it changes seldom: energy
   // is kept to second order only while it stays.
   constexpr double margin = 0.05, growth = 1.15;

@@ -6,7 +6,7 @@
 // The same number with the same meaning: slip (1 / Coulomb's coefficient, by other rules of sticking), thicker_right
 // and thicker_back (thickness_wedge), vacuum_lost (weak_vacuum; here of the pump's final vacuum), mould_shift,
 // mould_rotation, mould_scale, print_scale, scan_scale, scan_shift.
-// Nearly: anisotropy. Young's modulus along x is 1 + a times the mean, along y a little more than 1 - a.
+// Nearly: anisotropy. Young's modulus along x is 1 + a times the even sheet's, along y a little more than 1 - a.
 // The direction alone:
 // - heating_gradient, heating_centre: here in kelvin. stiffness_ratio() gives the factor on stiffness after one second.
 // - cooling: here the heat that a mould of 293 K takes from what touches it. Nothing cools beside the contact, where

@@ -97,7 +97,7 @@ class Forming {
     plate_.plate_z_mm = std::min(0.0, plate_.plate_z_mm + plate_.seconds * plate_.plate_mm_per_s);
     motion_.step(pressure_mpa, [&](int node, const Vector3d& place, Vector3d& velocity) {
       const auto n = static_cast<std::size_t>(node);
-      // Far from the mould a lower bound of the distance is enough: it falls by at most the way of sheet and plate.
+      // Far from the mould a lower bound of the distance is enough: it falls by at most what sheet and plate move.
       clearance_[n] -= plate_.seconds * (velocity.norm() + plate_.plate_mm_per_s);
       if (clearance_[n] > 0) return;
       clearance_[n] = obstacle_.constrain(place, 0.5 * thickness_[node] + raised_[n], plate_, velocity);
@@ -171,9 +171,9 @@ class Forming {
       const auto feed = [&](Eigen::Index axis, double half_length, double spacing, double margin) {
         if (std::abs(flat[axis]) < half_length - 1e-9) return;
         const double inwards = flat[axis] > 0 ? -1 : 1;
-        const double way = inwards * (motion_.place()(axis, node) - flat[axis]);
+        const double fed_mm = inwards * (motion_.place()(axis, node) - flat[axis]);
         const double pull = inwards * motion_.force()(axis, node) / spacing;
-        const double speed = way < margin ? faults_.clamp_mm2_per_n_s * std::max(0.0, pull - holds_n_per_mm) : 0;
+        const double speed = fed_mm < margin ? faults_.clamp_mm2_per_n_s * std::max(0.0, pull - holds_n_per_mm) : 0;
         motion_.velocity()(axis, node) = inwards * speed;
       };
       feed(0, 0.5 * grid.width_mm, grid.spacing_y_mm(), margin_x);

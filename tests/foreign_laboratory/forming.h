@@ -47,7 +47,7 @@ struct FormedSheet {
   Points place_mm;                // middle surface, one column a node, raised plate at z = 0
   Points outward;                 // unit normals, away from the mould
   Eigen::VectorXd thickness_mm;   // at the nodes
-  double clamp_feed_mm = 0;       // mean way of the rim from under the clamp
+  double clamp_feed_mm = 0;       // mean movement of the rim from under the clamp
   double inside_node_mm = 0;      // how far the inner face of any node is inside of the mould or the plate
   double inside_cell_mm = 0;      // the same of the middles of cells and of their sides
   double spring_back_strain = 0;  // mean stress left over Young's modulus of the set plastic

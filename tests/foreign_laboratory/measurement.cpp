@@ -131,8 +131,9 @@ Points marked_places(const FormedSheet& sheet, const std::vector<Vector2d>& mark
 
 std::vector<MeasuredPoint> scan(const FormedSheet& sheet, const std::vector<Vector2d>& marks, const Faults& faults,
                                 const Scan& settings, std::mt19937_64& random) {
-  if (!(settings.noise_mm >= 0) || !(settings.outlier_share >= 0 && settings.outlier_share <= 0.5))
-    throw std::invalid_argument("noise: give a length of at least 0, and at most half of the points as outliers");
+  if (!(settings.noise_mm >= 0 && settings.noise_mm <= 100) ||
+      !(settings.outlier_share >= 0 && settings.outlier_share <= 0.5))
+    throw std::invalid_argument("noise: give 0 to 100 mm, and at most half of the points as outliers");
   std::vector<MeasuredPoint> measured;
   for (const Vector2d& mark : marks) {
     const double sigma = settings.noise_mm * (2 - marked_point(sheet, mark, faults).outward.z());

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Counts the lines of run_foreign_table.py: score_foreign_table.py FILE... prints docs/foreign_table.md.
 
-Of every case the last answer counts. Nothing is left out: cases that failed count as not named."""
+Of every case the last answer counts. Nothing is left out: failures count as not named, and on clean sheets as an alarm."""
 import argparse
 import json
 import math
@@ -92,7 +92,7 @@ def main():
 Sheets that `tests/foreign_laboratory` formed, with a simulation of another kind, and that `evidence-diagnose` was asked about.
 [evidence.md](evidence.md#a-laboratory-of-another-kind) says what differs and which commands make this page.
 
-- All cases that were run are counted, whether the cause can be visible or not. Shares have Wilson's 95 % interval.
+- All cases that were run are counted, whether the cause can be visible or not. Diagnoses that failed count as wrong. Shares have Wilson's 95 % interval [Wil27].
 - *Named first*: the verdict's first cause is the hidden one. *In doubt*: the report doubts its answer.
 - *Moved*: mean movement of the measured marks against the sheet of the same seed without fault.
 - Strengths are those of the laboratory (`tests/foreign_laboratory/faults.h`), ± is half the diagnosis's 95 % interval in its own unit.""")
@@ -105,7 +105,7 @@ Sheets that `tests/foreign_laboratory` formed, with a simulation of another kind
                        if all(c.get("in_the_list", True) for c in strong if c["cause"] == cause)])
     foreign = [c for c in strong if not c.get("in_the_list", True)]
     if foreign:
-        careful = sum(1 for c in foreign if not named(c) or c.get("doubtful", False))
+        careful = sum(1 for c in foreign if "error" not in c and (not named(c) or c["doubtful"]))
         print(f"\nA cause that is in no list (`print_stretch`): unknown, none or in doubt in {share(careful, len(foreign))}.")
     good = [c for c in cases if "error" not in c]
     if good:

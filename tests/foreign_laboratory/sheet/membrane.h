@@ -39,8 +39,8 @@ struct Grid {
 /// What the flat sheet is before it is heated.
 struct FlatSheet {
   std::function<double(double x_mm, double y_mm)> thickness_mm = [](double, double) { return 1.0; };
-  /// From extrusion: Young's modulus along x is 1 + this times the mean of both directions, along y 1 - this. Between
-  /// -0.9 and 0.9. Made by chains along the stiffer direction beside a softer even network.
+  /// From extrusion: Young's modulus along x is 1 + this times the even sheet's, along y a little more than 1 - this.
+  /// Between -0.9 and 0.9. Made by chains along the stiffer direction beside a softer even network.
   double anisotropy = 0;
 };
 

@@ -115,6 +115,24 @@ def check_folders(tops: list[pathlib.Path]) -> list[str]:
     return problems
 
 
+def check_foreign(folder: pathlib.Path) -> list[str]:
+    """A laboratory that judges the simulation shares nothing with it: it includes and links nothing of ours but its own folder."""
+    problems = []
+    for path in sorted(folder.rglob("*")):
+        where = path.relative_to(ROOT)
+        if path.suffix in {".h", ".cpp", ".inl"}:
+            for number, line in enumerate(path.read_text().splitlines(), 1):
+                match = re.match(r'\s*#\s*include\s*(["<])([^">]+)[">]', line)
+                if not match or match.group(2).startswith(folder.name + "/") and ".." not in match.group(2):
+                    continue
+                if match.group(1) == '"' or match.group(2).split("/")[0] in CORE:
+                    problems.append(f"{where}:{number}: {folder.name} must include nothing of ours, and includes {match.group(2)}")
+        elif path.name == "CMakeLists.txt":
+            linked = set(re.findall(r"\bfw_\w+", path.read_text())) - {"fw_warnings"}
+            problems += [f"{where}: {folder.name} must link nothing of ours, and links {name}" for name in sorted(linked)]
+    return problems
+
+
 IMPORT = re.compile(r"""(?:from|import)\s*\(?\s*['"](\.[^'"]+)['"]""")
 
 
@@ -178,6 +196,7 @@ def main() -> int:
     for host, allowed in HOSTS.items():
         problems += check_sources(ROOT / host, host, allowed, is_core=False)
     problems += check_folders([ROOT / "core", ROOT / "native_worker"])
+    problems += check_foreign(ROOT / "tests" / "foreign_laboratory")
     problems += check_web(ROOT / "web" / "src")
     problems += check_circles(ROOT / "web" / "src")
     for problem in problems:

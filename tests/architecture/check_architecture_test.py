@@ -23,6 +23,9 @@ with tempfile.TemporaryDirectory() as folder:
         "core/numerics/sparse/s.h": '#include "numerics/ordering/o.h"\n',
         "core/numerics/ordering/o.h": '#include "numerics/sparse/s.h"\n',
         "native_worker/files/big.h": "",
+        "tests/foreign_laboratory/own.h": '#include <Eigen/Core>\n#include "foreign_laboratory/own.h"\n',
+        "tests/foreign_laboratory/i.cpp": '#include "thermoform/x.h"\n#include "evidence/virtual_lab.h"\n#include <geometry/x.h>\n#include "foreign_laboratory/../x.h"\n',
+        "tests/foreign_laboratory/CMakeLists.txt": "target_link_libraries(x PUBLIC fw_thermoform PRIVATE fw_warnings)\n",
         "web/src/view/d.ts": "import { x } from '../jobs/y';\n",
         "web/src/shared/session/g.ts": "import { x } from '../../crafts/relief/e';\n",
         "web/src/crafts/relief/e.ts": "import { x } from '../zippable/y';\n",
@@ -42,12 +45,15 @@ with tempfile.TemporaryDirectory() as folder:
     for module in ("base", "relief", "job"):
         found += check.check_sources(root / "core" / module, module, check.CORE[module], is_core=True)
     found += check.check_folders([root / "core", root / "native_worker"])
+    found += check.check_foreign(root / "tests/foreign_laboratory")
     found += check.check_web(root / "web/src")
     found += check.check_circles(root / "web/src")
     expected = ["base must not include geometry", "relief must not include thermoform", "<fstream>", "must not print",
                 "evidence/fit must not include thermoform", "must not include a craft's model",
                 "core/numerics/ordering: circle of folders with core/numerics/sparse",
                 "core/numerics/sparse: circle of folders with core/numerics/ordering", "holds 25 files",
+                "includes thermoform/x.h", "includes evidence/virtual_lab.h", "includes geometry/x.h", "includes foreign_laboratory/../x.h",
+                "links fw_thermoform",
                 "view must not import jobs", "shared must not import crafts", "crafts do not know each other",
                 "circle: ui/round.ts imports ui/corner.tsx", "circle: ui/corner.tsx imports ui/round.ts"]
     assert len(found) == len(expected), found

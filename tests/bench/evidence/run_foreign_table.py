@@ -1,0 +1,111 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Forms objects in the foreign laboratory and diagnoses them, one line of JSON each; continues where it was stopped.
+
+run_foreign_table.py FOREIGN_LABORATORY FORMWRIGHT RESULTS.jsonl [--seeds N] [--noise MM] [--points N] [--folder DIR] [--jobs N] [--pairs]
+                     [--only CAUSE] [--mould NAME]
+
+A round is one clean sheet of each mould and every cause once, strong; its seed decides which mould a cause is tried on, before anything is computed.
+Cases that RESULTS has are not done again, nor are failures hidden: they are lines with "error"."""
+import argparse
+import concurrent.futures
+import json
+import pathlib
+import subprocess
+import tempfile
+import threading
+import time
+
+
+def names(program):
+    """Moulds and causes as the program lists them."""
+    lines = subprocess.run([program, "--names"], capture_output=True, text=True, check=True).stdout.split("\n")
+    words = [line.split() for line in lines if line]
+    return [name for kind, name in words if kind == "mould"], [name for kind, name in words if kind == "cause"]
+
+
+def cases(moulds, causes, seeds):
+    """(seed, mould, cause, level): clean sheets and causes in turn, so that a table that was stopped early has both."""
+    for turn in range(seeds):
+        first = 100 * (turn + 1)
+        clean = [(first + k, mould, "none", 1.0) for k, mould in enumerate(moulds)]
+        # Moulds follow each other in another order in every round, so that a cause meets each of them.
+        faulty = []
+        for k, cause in enumerate(causes):
+            mould = moulds[(k + turn * 5) % len(moulds)]
+            if cause == "mould_rotation" and mould in ("dome", "cone"):  # bodies of revolution do not show it
+                mould = "box"
+            faulty.append((first + 20 + k, mould, cause, 1.0))
+        while clean or faulty:
+            yield from faulty[:3]
+            yield from clean[:1]
+            faulty, clean = faulty[3:], clean[1:]
+
+
+def run(command):
+    done = subprocess.run(command, capture_output=True, text=True)
+    if done.returncode != 0:
+        raise RuntimeError(f"{pathlib.Path(command[0]).name} ended with {done.returncode}: {done.stderr.strip()[-400:]}")
+    return done.stdout
+
+
+def diagnosed(a, seed, mould, cause, level, folder):
+    """One line: the hidden truth, what the diagnosis said and how long both took."""
+    line = {"seed": seed, "mould": mould, "cause": cause, "level": level, "noise_mm": a.noise, "points": a.points, "pairs": a.pairs}
+    item = folder / f"{mould}_{cause}_{seed}"
+    try:
+        start = time.monotonic()
+        run([a.laboratory, "--mould", mould, "--cause", cause, "--level", str(level), "--noise", str(a.noise), "--points", str(a.points), "--seed", str(seed), "--out",
+             str(item)])
+        line["seconds_forming"] = round(time.monotonic() - start, 1)
+        truth = json.loads((item / "truth.json").read_text())
+        line |= {"in_the_list": truth["in_the_list"], "strength": truth["values"], "movement_mean_mm": truth["movement_mean_mm"]}
+        start = time.monotonic()
+        run([a.formwright, "evidence-diagnose", "--object", str(item), "--out", str(item / "report"), "--separate", "off", "--pairs", "on" if a.pairs else "off"])
+        line["seconds_diagnosing"] = round(time.monotonic() - start, 1)
+        found = json.loads((item / "report" / "diagnosis.json").read_text())
+        line |= {key: found[key] for key in ("verdict", "reading", "doubtful", "doubts", "error_before_mm", "error_after_mm", "noise_floor_mm", "unexplained_before_mm",
+                                             "unexplained_after_mm", "simulations")}
+        line["first"] = [{"name": f["name"], "probability": f["probability"], "strength": f["strength"], "interval": f["interval"], "values": f["values"],
+                          "min_visible_strength": f["min_visible_strength"]} for f in found["causes"][:3]]
+        line["calibrated"] = {p["name"]: p["calibrated"] for p in found["parameters"]}
+    except (RuntimeError, OSError, KeyError, json.JSONDecodeError) as error:
+        line["error"] = str(error)
+    return line
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("laboratory")
+    parser.add_argument("formwright")
+    parser.add_argument("results", type=pathlib.Path)
+    parser.add_argument("--seeds", type=int, default=1, help="rounds")
+    parser.add_argument("--noise", type=float, default=0.1)
+    parser.add_argument("--points", type=int, default=2000)
+    parser.add_argument("--folder", type=pathlib.Path, help="keeps the objects and reports here")
+    parser.add_argument("--jobs", type=int, default=1, help="cases at a time")
+    parser.add_argument("--pairs", action="store_true", help="also looks for two causes at once, which takes twice as long")
+    parser.add_argument("--only", help="this cause alone, or none")
+    parser.add_argument("--mould", help="this mould alone")
+    a = parser.parse_args()
+    moulds, causes = names(a.laboratory)
+    lines = [json.loads(line) for line in a.results.read_text().splitlines()] if a.results.exists() else []
+    done = {(line["seed"], line["mould"], line["cause"], line["level"], line["noise_mm"], line["points"], line["pairs"]) for line in lines if "error" not in line}
+    todo = [case for case in cases(moulds, causes, a.seeds)
+            if (*case, a.noise, a.points, a.pairs) not in done and a.only in (None, case[2]) and a.mould in (None, case[1])]
+    print(f"{len(done)} done, {len(todo)} to do", flush=True)
+    lock = threading.Lock()
+
+    def work(case):
+        with tempfile.TemporaryDirectory() as temporary:
+            line = diagnosed(a, *case, a.folder or pathlib.Path(temporary))
+        with lock, a.results.open("a") as out:
+            out.write(json.dumps(line) + "\n")
+        print(case, line.get("verdict", line.get("error")), flush=True)
+
+    with concurrent.futures.ThreadPoolExecutor(a.jobs) as pool:
+        list(pool.map(work, todo))
+
+
+if __name__ == "__main__":
+    main()

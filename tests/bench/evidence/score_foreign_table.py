@@ -1,0 +1,126 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Counts the lines of run_foreign_table.py: score_foreign_table.py FILE... prints docs/foreign_table.md.
+
+Of every case the last answer counts. Nothing is left out: failures count as not named, and on clean sheets as an alarm."""
+import argparse
+import json
+import math
+import statistics
+
+
+def wilson(hits, count):
+    """95 % interval of a share [Wil27], which holds for few cases, too."""
+    if count == 0:
+        return 0.0, 1.0
+    z = 1.959964
+    middle = (hits + z * z / 2) / (count + z * z)
+    half = z * math.sqrt(hits * (count - hits) / count + z * z / 4) / (count + z * z)
+    return max(0.0, middle - half), min(1.0, middle + half)
+
+
+def share(hits, count):
+    if count == 0:
+        return "none tried"
+    low, high = wilson(hits, count)
+    return f"{hits} of {count} ({100 * hits / count:.0f} %, {100 * low:.0f} to {100 * high:.0f} %)"
+
+
+def named(case):
+    """What the answer names, the stronger cause first; empty for none, unknown and failures."""
+    return [] if case.get("reading") in (None, "none", "unknown") else case["verdict"]
+
+
+def visible(case):
+    """Whether the hidden cause is stronger than what the diagnosis says would show; only where it lists the cause among its first."""
+    found = [f for f in case.get("first", []) if f["name"] == case["cause"]]
+    return bool(found) and found[0]["min_visible_strength"] is not None and abs(found[0]["strength"]) > found[0]["min_visible_strength"]
+
+
+def right(case):
+    return named(case)[:1] == [case["cause"]]
+
+
+def answer(case):
+    if "error" in case:
+        return "failed: " + case["error"].split("\n")[0][:80].replace("|", "/")
+    if not named(case):
+        return case["reading"]
+    found = {f["name"]: f for f in case["first"]}
+    said = " and ".join(f"{name} {abs(found[name]['strength']):.3g} ± {(found[name]['interval'][1] - found[name]['interval'][0]) / 2:.2g}" if name in found else name
+                        for name in named(case))
+    return said + (", in doubt" if case["doubtful"] else "") + (", or a twin" if case["reading"] == "cannot_separate" else "")
+
+
+def strength(case):
+    return ", ".join(f"{name} {value:.3g}" for name, value in case.get("strength", {}).items()) or "nothing"
+
+
+def first_names(case):
+    return ", ".join(f"{f['name']} {f['probability']:.2g}" for f in case.get("first", []) if f["probability"] >= 0.005)
+
+
+def table(title, groups):
+    print(f"\n## {title}\n")
+    print("| of | strong cause named first | named and not in doubt | another cause named | the same, not in doubt | clean: something named or unknown | clean: not in doubt |")
+    print("|---|---|---|---|---|---|---|")
+    for name, cases in groups:
+        listed = [c for c in cases if c["cause"] != "none" and c.get("in_the_list", True)]
+        clean = [c for c in cases if c["cause"] == "none"]
+        wrong = [c for c in listed if named(c) and not right(c)]
+        alarms = [c for c in clean if c.get("reading") != "none"]
+        sure = lambda group: sum(not c.get("doubtful", False) for c in group)
+        hits = [c for c in listed if right(c)]
+        print(f"| {name} | {share(len(hits), len(listed))} | {share(sure(hits), len(listed))} | {share(len(wrong), len(listed))} | {share(sure(wrong), len(listed))} "
+              f"| {share(len(alarms), len(clean))} | {share(sure(alarms), len(clean))} |")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("files", nargs="+")
+    a = parser.parse_args()
+    latest = {}
+    for name in a.files:
+        with open(name) as file:
+            for line in map(json.loads, filter(str.strip, file)):
+                latest[line["seed"], line["mould"], line["cause"], line["level"], line["noise_mm"], line["points"], line["pairs"]] = line
+    cases = sorted(latest.values(), key=lambda c: (c["cause"], c["mould"], c["seed"]))
+    strong = [c for c in cases if c["level"] == 1]
+    moulds = sorted({c["mould"] for c in cases})
+    print("""# The diagnosis on sheets of another laboratory
+
+Sheets that `tests/foreign_laboratory` formed, with a simulation of another kind, and that `evidence-diagnose` was asked about.
+[evidence.md](evidence.md#a-laboratory-of-another-kind) says what differs and which commands make this page.
+
+- All cases that were run are counted, whether the cause can be visible or not. Diagnoses that failed count as wrong. Shares have Wilson's 95 % interval [Wil27].
+- *Named first*: the verdict's first cause is the hidden one. *In doubt*: the report doubts its answer.
+- *Moved*: mean movement of the measured marks against the sheet of the same seed without fault.
+- Strengths are those of the laboratory (`tests/foreign_laboratory/faults.h`), ± is half the diagnosis's 95 % interval in its own unit.""")
+    table("All cases", [("every mould", strong)] + [(mould, [c for c in strong if c["mould"] == mould]) for mould in moulds])
+    seen = [c for c in strong if c["cause"] == "none" or visible(c)]
+    table("Only causes that the answer lists as visible", [("every mould", seen)])
+    print("\nA cause counts as visible if it is among the three likeliest and found stronger than its `min_visible_strength`. This row is chosen by the answer itself: it is no "
+          "measure of how often the diagnosis is right.")
+    table("By cause", [(cause, [c for c in strong if c["cause"] == cause]) for cause in sorted({c["cause"] for c in strong} - {"none"})
+                       if all(c.get("in_the_list", True) for c in strong if c["cause"] == cause)])
+    foreign = [c for c in strong if not c.get("in_the_list", True)]
+    if foreign:
+        careful = sum(1 for c in foreign if "error" not in c and (not named(c) or c["doubtful"]))
+        print(f"\nA cause that is in no list (`print_stretch`): unknown, none or in doubt in {share(careful, len(foreign))}.")
+    good = [c for c in cases if "error" not in c]
+    if good:
+        clean = [c["error_before_mm"] for c in good if c["cause"] == "none"]
+        if clean:
+            print(f"\nClean sheets: mean distance of {statistics.median(clean):.2f} mm (median) between sheet and calibrated simulation on held-out blocks, noise alone would give "
+                  f"{statistics.median(c['noise_floor_mm'] for c in good if c['cause'] == 'none'):.2f} mm.")
+        print(f"\nSeconds for a case: {statistics.median(c['seconds_forming'] for c in good):.0f} to form, {statistics.median(c['seconds_diagnosing'] for c in good):.0f} to diagnose "
+              f"(medians). Failed: {len(cases) - len(good)}.")
+    print("\n## Every answer\n\n| hidden | strength | mould | moved mm | answer | likeliest causes | error before → after, mm | seed |\n|---|---|---|---:|---|---|---|---:|")
+    for c in cases:
+        errors = f"{c['error_before_mm']:.2f} → {c['error_after_mm']:.2f}" if "error" not in c else ""
+        mark = "" if c["cause"] == "none" or right(c) or not c.get("in_the_list", True) else " ✗"
+        print(f"| {c['cause']} | {strength(c)} | {c['mould']} | {c.get('movement_mean_mm', 0):.2f} | {answer(c)}{mark} | {first_names(c)} | {errors} | {c['seed']} |")
+
+
+if __name__ == "__main__":
+    main()

@@ -7,6 +7,8 @@
 namespace formwright {
 namespace {
 
+constexpr double min_reported = 0.001;  // of a probability: whatever is less likely is one
+
 /// Probabilities that round to certainty are not reported as certain.
 std::string percent(double share) {
   if (share > 0.99) return "over 99 %";
@@ -86,11 +88,18 @@ Json diagnosis_json(const DiagnosisReport& report) {
     return list;
   };
   json["answers"] = Json::array();
-  for (const Answer& answer : d.answers)
+  double others = 0;
+  for (const Answer& answer : d.answers) {
+    if (answer.probability < min_reported) {
+      others += answer.probability;
+      continue;
+    }
     json["answers"].push_back({{"causes", names(answer.causes)},
                                {"unknown_cause", answer.unknown_cause},
                                {"label", answer_label(report, answer)},
                                {"probability", answer.probability}});
+  }
+  json["other_answers"] = others;
   json["failed"] = Json::array();
   for (const FailedCheck& f : d.failed) {
     if (f.failure == Failure::behind_failed) continue;

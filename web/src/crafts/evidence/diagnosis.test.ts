@@ -11,8 +11,9 @@ const report: Report = {
     { causes: ['heating_gradient'], unknown_cause: false, label: 'Uneven heating', probability: 0.6 },
     { causes: ['thickness_wedge'], unknown_cause: false, label: 'Wedge', probability: 0.388 },
     { causes: [], unknown_cause: true, label: 'A cause that is not in the list', probability: 0.008 },
-    { causes: [], unknown_cause: false, label: 'Nothing wrong', probability: 0.004 },
+    { causes: [], unknown_cause: false, label: 'Nothing wrong', probability: 0.0035 },
   ],
+  other_answers: 0.0005,
   failed: [{ causes: ['weak_vacuum'], label: 'Vacuum too weak', sentence: 'It would fit, but.' }],
   causes: [
     {

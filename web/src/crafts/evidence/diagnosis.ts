@@ -102,7 +102,7 @@ function answersOf(report: Report): Answer[] {
   const listed = all.filter(({ probability }) => probability >= minListed);
   const others = all
     .filter(({ probability }) => probability < minListed)
-    .reduce((sum, { probability }) => sum + probability, 0);
+    .reduce((sum, { probability }) => sum + probability, number(report['other_answers']));
   return others > 0 ? [...listed, { label: 'All other answers', causes: [], probability: others }] : listed;
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 // Larger triangles over a regular grid where it is flat: a right-triangulated irregular network (Evans, Kirkpatrick,
-// Townsend 2001). Triangles are right isosceles, named by their corners: a and b at the ends of the hypotenuse, c at the
-// right angle; splitting joins c to the middle of a b.
+// Townsend 2001). Triangles are right isosceles, named by their corners: a and b at the ends of the hypotenuse, c at
+// the right angle; splitting joins c to the middle of a b.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -81,8 +81,7 @@ class RightTriangleNetwork {
   }
   static GridNode between(GridNode a, GridNode b) { return {(a.x + b.x) / 2, (a.y + b.y) / 2}; }
   float& bound_at(GridNode p) {
-    return bound_[static_cast<std::size_t>(p.y) * static_cast<std::size_t>(columns_) +
-                  static_cast<std::size_t>(p.x)];
+    return bound_[static_cast<std::size_t>(p.y) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(p.x)];
   }
   bool beyond(GridNode p) const { return p.x >= columns_ || p.y >= rows_; }
   bool outside(GridNode a, GridNode b, GridNode c) const {

@@ -8,8 +8,8 @@
 
 namespace formwright {
 
-/// Bands of rays from left to right with a plane through the viewpoint between each and the next. All points are in view
-/// coordinates.
+/// Bands of rays from left to right with a plane through the viewpoint between each and the next. All points are in
+/// view coordinates.
 class GroupBorders {
  public:
   virtual ~GroupBorders() = default;

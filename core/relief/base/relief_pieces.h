@@ -16,8 +16,8 @@ struct ReliefPieces {
   std::vector<int> origin;  // of each vertex, that of the relief which it is or lies nearest to
 };
 
-/// Cuts the joint surface exactly along the borders' planes, and brings each part back to its band by its own scale. New
-/// vertices on a border keep to the bounds of their band. Parts in bands without a group are left out.
+/// Cuts the joint surface exactly along the borders' planes, and brings each part back to its band by its own scale.
+/// New vertices on a border keep to the bounds of their band. Parts in bands without a group are left out.
 /// @param joint  n, u of the surface in one piece, as eq. (3.14) has it
 /// @param m      of each group, mu = 1 + kappa m, or the shift in depth straight on
 ReliefPieces cut_into_bands(const ViewFrame& frame, const Triangles& F, const Eigen::VectorXd& joint,

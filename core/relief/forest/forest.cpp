@@ -9,11 +9,11 @@
 namespace formwright {
 namespace {
 
-constexpr double between_reliefs_mm = 0.2;       // left between the reliefs of two neighbouring pillars
-constexpr double min_piece_width_mm = 0.3;       // of a surface that is worth a piece
-constexpr double solid_tolerance_share = 5e-3;   // of the thickness
+constexpr double between_reliefs_mm = 0.2;      // left between the reliefs of two neighbouring pillars
+constexpr double min_piece_width_mm = 0.3;      // of a surface that is worth a piece
+constexpr double solid_tolerance_share = 5e-3;  // of the thickness
 constexpr double max_nodes = sizeof(void*) > 4 ? 40e6 : 10e6;
-constexpr double room_beside_model = 0.02;       // of its width: what a viewpoint claims beyond its model
+constexpr double room_beside_model = 0.02;  // of its width: what a viewpoint claims beyond its model
 
 double gap_mm(const ForestOptions& options) { return 2 * options.thickness_mm + between_reliefs_mm; }
 
@@ -68,9 +68,9 @@ void refuse_intrusion(const ForestPlan& plan, const std::vector<ViewCheck>& chec
   for (std::size_t v = 0; v < checks.size(); ++v)
     if (const int worst = checks[v].worst_pillar(); worst >= 0)
       throw Error(ErrorCode::invalid_input, "intrusion",
-                  "Pieces of other models cover " +
-                      with_digits(std::max(0.01, 100 * checks[v].intruding_share()), 2) + " % of the picture from " +
-                      name_of(plan, v) + ", most of it on pillar " + std::to_string(worst + 1) +
+                  "Pieces of other models cover " + with_digits(std::max(0.01, 100 * checks[v].intruding_share()), 2) +
+                      " % of the picture from " + name_of(plan, v) + ", most of it on pillar " +
+                      std::to_string(worst + 1) +
                       ": move this pillar, leave shared surfaces bare, or allow intrusion.");
 }
 
@@ -92,8 +92,8 @@ void make_solids(const ForestPlan& plan, const ForestOptions& options, SolvedFor
                                       solid_tolerance_share * (space.above_mm + space.below_mm), context));
     const int number = static_cast<int>(p) + 1;
     try {
-      forest.pillars.push_back(pillar_solid(pillars[p], number, {options.pin_diameter_mm, options.pin_depth_mm}, solids,
-                                            context));
+      forest.pillars.push_back(
+          pillar_solid(pillars[p], number, {options.pin_diameter_mm, options.pin_depth_mm}, solids, context));
     } catch (const Error& error) {
       if (error.code() == ErrorCode::cancelled || error.where() == "pin_diameter_mm") throw;
       throw Error(ErrorCode::could_not_solve, "scene",

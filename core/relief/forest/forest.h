@@ -30,9 +30,9 @@ struct SolvedForest {
   std::vector<ForestRelief> reliefs;          // of each viewpoint
   std::vector<std::vector<PieceGrid>> grids;  // of each viewpoint
   std::vector<PillarSolid> pillars;
-  std::vector<ViewCheck> checks;              // of each viewpoint
+  std::vector<ViewCheck> checks;  // of each viewpoint
   StandingForest standing;
-  std::shared_ptr<const RayCaster> caster;    // of `standing`
+  std::shared_ptr<const RayCaster> caster;  // of `standing`
   double seconds_solve = 0, seconds_solids = 0, seconds_check = 0;
 };
 

@@ -19,7 +19,7 @@ StandingForest standing_forest(std::span<const TriangleMesh> pillars);
 /// A viewpoint with what was made for it.
 struct CheckedView {
   const ForestView& view;
-  const ViewFrame& frame;       // of the model
+  const ViewFrame& frame;  // of the model
   const Triangles& model_F;
   const ForestRelief& relief;
   const std::vector<PieceGrid>& grids;
@@ -28,10 +28,10 @@ struct CheckedView {
 /// Of the rays through a viewpoint's model, evenly spread over the picture.
 struct ViewCheck {
   int rays = 0;
-  int seen = 0;       // meet the model's own piece
-  int bare = 0;       // meet a pillar's bare surface
-  int nothing = 0;    // meet no pillar
-  int intruding = 0;  // meet a piece of another model
+  int seen = 0;                               // meet the model's own piece
+  int bare = 0;                               // meet a pillar's bare surface
+  int nothing = 0;                            // meet no pillar
+  int intruding = 0;                          // meet a piece of another model
   std::vector<int> intruding_rays_of_pillar;  // of each pillar
   double seen_share() const { return rays > 0 ? static_cast<double>(seen) / rays : 0; }
   double intruding_share() const { return rays > 0 ? static_cast<double>(intruding) / rays : 0; }

@@ -148,8 +148,9 @@ struct ForestOptions {
           "Flat keeps the whole model within the thickness. May sink lets the hidden back go deeper, which distorts the visible side less.")
           .group("Shape")
           .advanced(),
-      parameter("hidden_weight", &ForestOptions::hidden_weight, "How much the back matters", unit::none, 0.001, 1,
-                "How much the shape of parts hidden from the viewer matters. Smaller values distort visible parts less.")
+      parameter(
+          "hidden_weight", &ForestOptions::hidden_weight, "How much the back matters", unit::none, 0.001, 1,
+          "How much the shape of parts hidden from the viewer matters. Smaller values distort visible parts less.")
           .group("Shape")
           .slider(0.01, 1)
           .advanced(),
@@ -157,8 +158,9 @@ struct ForestOptions {
                 "Keeps what is in front in front, so that parts do not pass through each other.")
           .group("Shape")
           .advanced(),
-      parameter("pixel_mm", &ForestOptions::pixel_mm, "Detail of the solids", unit::mm, 0.05, 10,
-                "Spacing of the points on the pillars' surfaces at which the relief is taken. Smaller shows finer detail and takes longer.")
+      parameter(
+          "pixel_mm", &ForestOptions::pixel_mm, "Detail of the solids", unit::mm, 0.05, 10,
+          "Spacing of the points on the pillars' surfaces at which the relief is taken. Smaller shows finer detail and takes longer.")
           .group("Output")
           .slider(0.1, 1)
           .advanced(),

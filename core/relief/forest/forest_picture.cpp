@@ -87,7 +87,8 @@ Image picture_of_forest(const StandingForest& forest, const RayCaster& caster, c
         const auto hit = caster.first_hit(camera.eye_mm, direction, 0, horizon_mm);
         const double floor = direction.z() < 0 ? -camera.eye_mm.z() / direction.z() : INFINITY;
         if (hit && hit->distance < floor) {
-          const Vec3 a = forest.mesh.V.row(forest.mesh.F(hit->face, 0)), b = forest.mesh.V.row(forest.mesh.F(hit->face, 1)),
+          const Vec3 a = forest.mesh.V.row(forest.mesh.F(hit->face, 0)),
+                     b = forest.mesh.V.row(forest.mesh.F(hit->face, 1)),
                      c = forest.mesh.V.row(forest.mesh.F(hit->face, 2));
           brightness = ambient + matt * std::max(0.0, (b - a).cross(c - a).normalized().dot(light));
         } else if (std::isfinite(floor) && floor > 0) {

@@ -108,8 +108,8 @@ DepthBounds wall_bounds(const ForestView& view, const ViewFrame& frame, std::spa
       if (options.bounded_vertices == BoundedVertices::visible && visibility.vertex[i] == 0) continue;
       const WallPiece& wall = pieces[static_cast<std::size_t>(own)];
       const WallReach reach =
-          wall_reach(view.plan(), pillars[static_cast<std::size_t>(wall.pillar)],
-                     wall.strip_at(rays[i].aside).edge, rays[i].aside, space.above_mm, space.below_mm);
+          wall_reach(view.plan(), pillars[static_cast<std::size_t>(wall.pillar)], wall.strip_at(rays[i].aside).edge,
+                     rays[i].aside, space.above_mm, space.below_mm);
       const auto row = static_cast<Eigen::Index>(i);
       bounds.bounded[i] = 1;
       bounds.nearest[row] = depth_of(frame.kappa, frame.P(row, 2), reach.near / rays[i].ahead);
@@ -120,9 +120,9 @@ DepthBounds wall_bounds(const ForestView& view, const ViewFrame& frame, std::spa
   return bounds;
 }
 
-ForestRelief solve_on_walls(ReliefSolver& solver, const ForestView& view,
-                            std::span<const Pillar> pillars, std::vector<WallPiece> pieces, const WallSpace& space,
-                            const ReliefOptions& options, Context& context) {
+ForestRelief solve_on_walls(ReliefSolver& solver, const ForestView& view, std::span<const Pillar> pillars,
+                            std::vector<WallPiece> pieces, const WallSpace& space, const ReliefOptions& options,
+                            Context& context) {
   ForestRelief result;
   result.pieces = std::move(pieces);
   const ViewFrame& frame = solver.frame();

@@ -21,21 +21,21 @@ struct ForestRelief {
   std::vector<WallPiece> pieces;  // those that vertices of the model lie on
   int pieces_without_vertices = 0;
   Relief relief;
-  TriangleMesh surface;          // all pieces, in the axes of the floor
-  std::vector<int> face_piece;   // index into `pieces`
+  TriangleMesh surface;                     // all pieces, in the axes of the floor
+  std::vector<int> face_piece;              // index into `pieces`
   std::shared_ptr<const RayCaster> caster;  // of `surface`
 };
 
-/// Bounds of every vertex from the pillars' surface on its ray, with a group for each piece. Vertices whose rays meet no
-/// piece are free. Pieces without vertices are taken out of `pieces`, and counted.
+/// Bounds of every vertex from the pillars' surface on its ray, with a group for each piece. Vertices whose rays meet
+/// no piece are free. Pieces without vertices are taken out of `pieces`, and counted.
 DepthBounds wall_bounds(const ForestView& view, const ViewFrame& frame, std::span<const Pillar> pillars,
                         std::vector<WallPiece>& pieces, const WallSpace& space, const ReliefOptions& options,
                         const Visibility& visibility, int& pieces_without_vertices, Context& context);
 
 /// `solver`: of the viewpoint's model and view.relief_options(options).
 /// Throws Error: invalid_input "scene" (no vertex of the model before a pillar); see ReliefSolver::solve.
-ForestRelief solve_on_walls(ReliefSolver& solver, const ForestView& view,
-                            std::span<const Pillar> pillars, std::vector<WallPiece> pieces, const WallSpace& space,
-                            const ReliefOptions& options, Context& context);
+ForestRelief solve_on_walls(ReliefSolver& solver, const ForestView& view, std::span<const Pillar> pillars,
+                            std::vector<WallPiece> pieces, const WallSpace& space, const ReliefOptions& options,
+                            Context& context);
 
 }  // namespace formwright

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// A viewpoint of the forest and its model: from the axes of the solved relief (ViewFrame) to those of the floor and back.
+// A viewpoint of the forest and its model: from the axes of the solved relief (ViewFrame) to those of the floor and
+// back.
 #include "relief/forest/plan/forest_scene.h"
 #include "relief/forest/plan/plan_view.h"
 #include "relief/view/relief_options.h"
@@ -8,8 +9,8 @@
 
 namespace formwright {
 
-/// A point by the ray that it lies on: tangents to the right of and above straight ahead, horizontally, and the distance
-/// ahead in the floor plan.
+/// A point by the ray that it lies on: tangents to the right of and above straight ahead, horizontally, and the
+/// distance ahead in the floor plan.
 struct RayPoint {
   double aside = 0, above = 0, ahead = 0;
 };

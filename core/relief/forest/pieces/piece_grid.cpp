@@ -42,7 +42,8 @@ int steps_of(double length_mm, double pixel_mm) {
 
 class RayDepth {
  public:
-  RayDepth(const ForestRelief& relief, int piece, const ForestView& view) : relief_(relief), piece_(piece), view_(view) {
+  RayDepth(const ForestRelief& relief, int piece, const ForestView& view)
+      : relief_(relief), piece_(piece), view_(view) {
     far_ = 2 * (relief.surface.V.rowwise() - view.eye().transpose()).rowwise().norm().maxCoeff();
   }
   /// Distance ahead at which a ray meets the piece; nothing where it does not.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// One piece of a relief on a grid over its part of a pillar's surface: columns along the outline, rows along the height.
-// Every node is a ray from the viewpoint through a point of the surface.
+// One piece of a relief on a grid over its part of a pillar's surface: columns along the outline, rows along the
+// height. Every node is a ray from the viewpoint through a point of the surface.
 #include <span>
 
 #include "relief/forest/pieces/forest_relief.h"
@@ -10,17 +10,17 @@
 namespace formwright {
 
 struct PieceGridSizes {
-  double pixel_mm = 0.3;        // spacing of columns and rows on the surface, at most
+  double pixel_mm = 0.3;          // spacing of columns and rows on the surface, at most
   double border_inset_mm = 0.01;  // what is left out at the piece's ends, so that thin solids close in any file format
 };
 
 struct PieceGrid {
   int pillar = 0, piece = 0;
-  std::vector<double> aside;      // tangent of each column, ascending
-  std::vector<WallReach> reach;   // of each column
-  std::vector<double> z_mm;       // of each row on the surface
-  std::vector<double> front;      // rows * columns: distance ahead of the relief, or of the surface where there is none
-  std::vector<char> covered;      // (rows - 1) * (columns - 1): cells in whose middle the model is seen
+  std::vector<double> aside;     // tangent of each column, ascending
+  std::vector<WallReach> reach;  // of each column
+  std::vector<double> z_mm;      // of each row on the surface
+  std::vector<double> front;     // rows * columns: distance ahead of the relief, or of the surface where there is none
+  std::vector<char> covered;     // (rows - 1) * (columns - 1): cells in whose middle the model is seen
   std::vector<double> middle_front;  // the same: of the relief there
 
   int columns() const { return static_cast<int>(aside.size()); }

@@ -16,8 +16,8 @@ constexpr double room_before_mm = 0.5;  // how far the room begins before the sp
 /// Two sheets over the covered cells of one grid, and the walls between them.
 struct Sheets {
   int columns, rows;
-  std::vector<char> covered;        // (rows - 1) * (columns - 1)
-  std::vector<Vec3> front, back;    // rows * columns
+  std::vector<char> covered;      // (rows - 1) * (columns - 1)
+  std::vector<Vec3> front, back;  // rows * columns
   std::size_t node(GridNode p) const {
     return static_cast<std::size_t>(p.y) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(p.x);
   }

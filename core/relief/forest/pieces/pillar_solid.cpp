@@ -23,8 +23,8 @@ TriangleMesh mark_groove(const Pillar& pillar, const Vec2& pin) {
   double end = pin.y();
   for (const Vec2& p : pillar.outline_mm) end = std::max(end, p.y());
   const double half = 0.5 * mark_width_mm;
-  const Outline groove{{pin.x() - half, pin.y()}, {pin.x() + half, pin.y()}, {pin.x() + half, end + 1},
-                       {pin.x() - half, end + 1}};
+  const Outline groove{
+      {pin.x() - half, pin.y()}, {pin.x() + half, pin.y()}, {pin.x() + half, end + 1}, {pin.x() - half, end + 1}};
   return prism(groove, -mark_depth_mm, std::min(mark_depth_mm, into_pillar_share * pillar.height_mm));
 }
 
@@ -70,8 +70,9 @@ PillarSolid pillar_solid(const Pillar& pillar, int number, const BasePin& pin, s
                               exact(mark_groove(pillar, result.pin_mm)), context);
   for (const TriangleMesh& groove : number_grooves(pillar, number, result.pin_mm, pin.diameter_mm))
     solid = subtract(solid, exact(groove), context);
-  solid = unite(solid, exact(prism(round_outline(result.pin_mm, pin.diameter_mm, pin_corners), -pin.depth_mm, into_pillar)),
-                context);
+  solid =
+      unite(solid, exact(prism(round_outline(result.pin_mm, pin.diameter_mm, pin_corners), -pin.depth_mm, into_pillar)),
+            context);
   for (const PieceSolids& piece : pieces)
     if (piece.room.F.rows() > 0) solid = subtract(solid, exact(piece.room), context);
   for (const PieceSolids& piece : pieces) solid = unite(solid, exact(piece.raised), context);

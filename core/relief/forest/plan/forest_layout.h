@@ -21,9 +21,9 @@ struct EnumNames<PillarShape> {
 /// What all layouts share. Lengths in mm.
 struct PillarKind {
   PillarShape shape = PillarShape::mixed;
-  double width_mm = 12;   // diameter, or from side to side
+  double width_mm = 12;  // diameter, or from side to side
   double height_mm = 120;
-  double gap_mm = 4;      // between any two pillars, at least
+  double gap_mm = 4;  // between any two pillars, at least
 };
 
 /// A rectangle of the floor about its middle.
@@ -40,10 +40,10 @@ std::vector<Pillar> grid_of_pillars(const FloorArea& area, int columns, int rows
 /// "pillar_count"} where no room is found for so many.
 std::vector<Pillar> random_pillars(const FloorArea& area, int count, const PillarKind& kind, std::uint64_t seed);
 
-/// For every viewpoint a staggered row of pillars at random distances, from `outer_mm` to `inner_mm` before what it looks
-/// at, which together stop all rays to its model; their width varies with the distance. Pillars of one viewpoint do not
-/// stand in the rays of another before these are stopped. Throws Error{invalid_input, "screen_outer_mm"} where no room is
-/// found for that.
+/// For every viewpoint a staggered row of pillars at random distances, from `outer_mm` to `inner_mm` before what it
+/// looks at, which together stop all rays to its model; their width varies with the distance. Pillars of one viewpoint
+/// do not stand in the rays of another before these are stopped. Throws Error{invalid_input, "screen_outer_mm"} where
+/// no room is found for that.
 std::vector<Pillar> screens_of_pillars(std::span<const PlanView> views, double outer_mm, double inner_mm,
                                        const PillarKind& kind, std::uint64_t seed);
 

@@ -29,7 +29,8 @@ void check_pillar(const Pillar& pillar, std::size_t index) {
   for (int k = 0; k < static_cast<int>(pillar.outline_mm.size()); ++k)
     if (corner(pillar.outline_mm, k) == corner(pillar.outline_mm, k + 1))
       refuse(name + " has two corners at the same place: leave one of them out.");
-  if (crosses_itself(pillar.outline_mm)) refuse(name + " has an outline that crosses itself: put its corners in order.");
+  if (crosses_itself(pillar.outline_mm))
+    refuse(name + " has an outline that crosses itself: put its corners in order.");
   if (std::abs(outline_area_mm2(pillar.outline_mm)) < min_area_mm2)
     refuse(name + " covers less than 1 mm² of the floor: make it wider.");
 }
@@ -53,7 +54,8 @@ void check_viewpoint(const ForestScene& scene, std::size_t index) {
       refuse(name + " stands inside pillar " + std::to_string(p + 1) + ": move one of the two.");
     for (const Vec2& c : outline) any_ahead = any_ahead || forward.dot(c - eye) > 0;
   }
-  if (!any_ahead) refuse("All pillars stand behind viewpoint " + std::to_string(index + 1) + ": turn it round or move it.");
+  if (!any_ahead)
+    refuse("All pillars stand behind viewpoint " + std::to_string(index + 1) + ": turn it round or move it.");
 }
 
 }  // namespace

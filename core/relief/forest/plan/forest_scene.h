@@ -13,11 +13,11 @@ namespace formwright {
 /// A place from which the pieces of one model line up.
 struct ForestViewpoint {
   Vec3 eye_mm{0, 0, 0};
-  Vec3 look_at_mm{0, 0, 0};                 // the middle of the model, which seems to stand there
-  double width_mm = 0;                      // the model's width where it seems to stand
+  Vec3 look_at_mm{0, 0, 0};                   // the middle of the model, which seems to stand there
+  double width_mm = 0;                        // the model's width where it seems to stand
   std::array<double, 3> direction{0, 0, -1};  // in which the viewer looks at the model, in the model's axes
   std::array<double, 3> up{0, 1, 0};          // upwards in the picture, in the model's axes
-  std::string model;                        // its name, for messages and files
+  std::string model;                          // its name, for messages and files
 };
 
 struct ForestScene {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// A viewpoint in the floor plan. Rays are named by their tangent t to the right of straight ahead, and places on a ray by
-// their distance b ahead, measured along the looking direction: e + b (forward + t right).
+// A viewpoint in the floor plan. Rays are named by their tangent t to the right of straight ahead, and places on a ray
+// by their distance b ahead, measured along the looking direction: e + b (forward + t right).
 #include <algorithm>
 
 #include "geometry/mesh/triangle_mesh.h"

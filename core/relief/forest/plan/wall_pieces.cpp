@@ -12,7 +12,7 @@ namespace {
 /// A strip as a part of its edge.
 struct Claim {
   int view;
-  double from, to;  // places on the edge
+  double from, to;    // places on the edge
   double squareness;  // cosine between edge normal and line of sight, in its middle
 };
 
@@ -140,8 +140,9 @@ WallAssignment assign_walls(std::span<const PlanView> views, std::span<const Pil
     for (const WallPiece& piece : result.pieces.back()) used += covered(piece.strips);
     result.used_share.push_back(used / range);
     if (result.pieces.back().empty())
-      throw refused("scene", "Nothing is left for viewpoint " + number(static_cast<int>(v)) +
-                                 ": all pillars that it sees are seen by others, too. Move its pillars or the viewpoint.");
+      throw refused("scene",
+                    "Nothing is left for viewpoint " + number(static_cast<int>(v)) +
+                        ": all pillars that it sees are seen by others, too. Move its pillars or the viewpoint.");
   }
   return result;
 }

@@ -54,7 +54,8 @@ CutSheet floor_plan(const ForestPlan& plan, std::span<const Vec2> pins, double h
   for (std::size_t p = 0; p < pins.size(); ++p) {
     const std::string number = std::to_string(p + 1);
     const Outline& outline = plan.scene.pillars[p].outline_mm;
-    sheet.paths.push_back(outline_path(CutLayer::cut, round_outline(pins[p], hole, hole_corners), origin, "hole-" + number));
+    sheet.paths.push_back(
+        outline_path(CutLayer::cut, round_outline(pins[p], hole, hole_corners), origin, "hole-" + number));
     sheet.paths.push_back(outline_path(CutLayer::mark, outline, origin, "pillar-" + number));
     double top = pins[p].y();
     for (const Vec2& q : outline) top = std::max(top, q.y());
@@ -71,7 +72,8 @@ CutSheet floor_plan(const ForestPlan& plan, std::span<const Vec2> pins, double h
   const Vec2 middle = 0.5 * Vec2(sheet.width_mm, sheet.height_mm), reach = middle - Vec2::Constant(viewpoint_height_mm);
   for (std::size_t v = 0; v < plan.views.size(); ++v) {
     const Vec2 away = plan.plan_views[v].eye - origin - middle;
-    const double share = std::min(reach.x() / std::max(std::abs(away.x()), 1e-9), reach.y() / std::max(std::abs(away.y()), 1e-9));
+    const double share =
+        std::min(reach.x() / std::max(std::abs(away.x()), 1e-9), reach.y() / std::max(std::abs(away.y()), 1e-9));
     for (CutPath& path : word_paths("V" + std::to_string(v + 1), middle + std::min(1.0, share) * away, Vec2(1, 0),
                                     viewpoint_height_mm, CutLayer::note))
       sheet.paths.push_back(std::move(path));
@@ -108,8 +110,8 @@ Bytes forest_pictures(const ForestPlan& plan, const SolvedForest& forest, int pi
   for (std::size_t v = 0; v < plan.views.size(); ++v) {
     const ForestViewpoint& viewpoint = plan.scene.viewpoints[v];
     zip.add_stored("viewpoint_" + std::to_string(v + 1) + "_" + file_word(viewpoint.model) + ".png",
-                   write_png(picture_of_forest(forest.standing, *forest.caster, camera_of(viewpoint), pixels, context), 0,
-                             context));
+                   write_png(picture_of_forest(forest.standing, *forest.caster, camera_of(viewpoint), pixels, context),
+                             0, context));
   }
   zip.add_stored("elsewhere.png", write_png(picture_of_forest(forest.standing, *forest.caster,
                                                               camera_from_elsewhere(plan.scene), pixels, context),

@@ -9,8 +9,8 @@ namespace formwright {
 /// "01", "02", ..., with as many digits as the largest number has, two at least.
 std::string numbered(std::size_t index, std::size_t count);
 
-/// The floor at true size, x right and y back: holes for the pins to cut, outlines and turning marks to mark, numbers of
-/// pillars to engrave, and where the viewpoints are as notes. `pins`: places of the pins, one a pillar.
+/// The floor at true size, x right and y back: holes for the pins to cut, outlines and turning marks to mark, numbers
+/// of pillars to engrave, and where the viewpoints are as notes. `pins`: places of the pins, one a pillar.
 CutSheet floor_plan(const ForestPlan& plan, std::span<const Vec2> pins, double hole_diameter_mm);
 
 /// All pillars where they stand, one group each, in the axes of the floor.

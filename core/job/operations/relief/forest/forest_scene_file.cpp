@@ -103,8 +103,8 @@ void read_viewpoint(const Json& object, std::size_t index, ForestSceneFile& file
       source.sample_vertices = entry.whole("vertices");
       if (source.sample_vertices < min_sample_vertices || source.sample_vertices > max_sample_vertices)
         refuse(entry.name() + " of the scene asks for a sample of " + std::to_string(source.sample_vertices) +
-               " vertices: give " + std::to_string(min_sample_vertices) + " to " +
-               std::to_string(max_sample_vertices) + ".");
+               " vertices: give " + std::to_string(min_sample_vertices) + " to " + std::to_string(max_sample_vertices) +
+               ".");
     }
   } else {
     source.input_number = entry.whole("model");
@@ -177,7 +177,8 @@ Json forest_scene_json(const ForestSceneFile& file) {
   for (std::size_t v = 0; v < file.scene.viewpoints.size(); ++v) {
     const ForestViewpoint& view = file.scene.viewpoints[v];
     const ForestModelSource& source = file.models[v];
-    Json one = {{"eye_mm", array_of(view.eye_mm)}, {"look_at_mm", array_of(view.look_at_mm)}, {"width_mm", view.width_mm}};
+    Json one = {
+        {"eye_mm", array_of(view.eye_mm)}, {"look_at_mm", array_of(view.look_at_mm)}, {"width_mm", view.width_mm}};
     if (source.input_number > 0) one["model"] = source.input_number;
     else one["sample"] = source.sample;
     if (source.sample_vertices > 0) one["vertices"] = source.sample_vertices;
@@ -201,7 +202,8 @@ ForestSceneFile sample_forest_scene() {
   // Models are 50 to 95 mm high where they seem to stand; the eyes are level with their middles.
   constexpr double away = 600;
   constexpr int vertices = 20000;
-  constexpr Side sides[] = {{"bust", 0, -1, 68, 60}, {"octopus", 1, 0, 92, 60}, {"cat", 0, 1, 52, 60}, {"fish", -1, 0, 92, 60}};
+  constexpr Side sides[] = {
+      {"bust", 0, -1, 68, 60}, {"octopus", 1, 0, 92, 60}, {"cat", 0, 1, 52, 60}, {"fish", -1, 0, 92, 60}};
   ForestSceneFile file;
   for (const Side& side : sides) {
     const SampleInfo& info = sample_called(side.sample, "The sample");

@@ -38,17 +38,19 @@ std::vector<InputInfo> forest_inputs() {
 }
 
 std::vector<OutputInfo> forest_outputs() {
-  return {
-      {"pillars.zip", "application/zip", "Pillars, STL",
-       "Every pillar with its relief and pin as a watertight solid, upright: pillar_01.stl and so on.", true},
-      {"pillars.3mf", "model/3mf", "Pillars, 3MF", "All pillars where they stand, as objects of their own.", true},
-      {"forest.glb", "model/gltf-binary", "Forest", "All pillars where they stand, for viewing.", true},
-      {"floor_plan.svg", "image/svg+xml", "Floor plan, SVG",
-       "The floor at true size: holes for the pins, outlines, numbers and how each pillar is turned.", true},
-      {"floor_plan.dxf", "image/vnd.dxf", "Floor plan, DXF", "The floor plan in mm as DXF R12, to drill or laser.", true},
-      {"pictures.zip", "application/zip", "Pictures", "The forest as seen from each viewpoint and from elsewhere.", true},
-      {"elsewhere.png", "image/png", "Picture from elsewhere", "The forest as seen from between two viewpoints.", false},
-      {"scene.json", "application/json", "Scene", "Viewpoints and pillars, to edit and to run again.", true}};
+  return {{"pillars.zip", "application/zip", "Pillars, STL",
+           "Every pillar with its relief and pin as a watertight solid, upright: pillar_01.stl and so on.", true},
+          {"pillars.3mf", "model/3mf", "Pillars, 3MF", "All pillars where they stand, as objects of their own.", true},
+          {"forest.glb", "model/gltf-binary", "Forest", "All pillars where they stand, for viewing.", true},
+          {"floor_plan.svg", "image/svg+xml", "Floor plan, SVG",
+           "The floor at true size: holes for the pins, outlines, numbers and how each pillar is turned.", true},
+          {"floor_plan.dxf", "image/vnd.dxf", "Floor plan, DXF", "The floor plan in mm as DXF R12, to drill or laser.",
+           true},
+          {"pictures.zip", "application/zip", "Pictures", "The forest as seen from each viewpoint and from elsewhere.",
+           true},
+          {"elsewhere.png", "image/png", "Picture from elsewhere", "The forest as seen from between two viewpoints.",
+           false},
+          {"scene.json", "application/json", "Scene", "Viewpoints and pillars, to edit and to run again.", true}};
 }
 
 std::vector<ReportField> forest_report_fields() {
@@ -159,12 +161,11 @@ void report_views(Json& report, std::vector<std::string>& notes, const ForestPla
     intruding_max = std::max(intruding_max, check.intruding_share());
     const std::string name = "Viewpoint " + std::to_string(v + 1) + " (" + plan.scene.viewpoints[v].model + ")";
     if (check.seen_share() < low_share)
-      notes.push_back(name + " sees " + with_digits(100 * check.seen_share(), 3) +
-                      " % of its model: rays meet no pillar at " +
-                      with_digits(check.rays > 0 ? 100.0 * check.nothing / check.rays : 0, 3) +
-                      " % of it and a bare surface at " +
-                      with_digits(check.rays > 0 ? 100.0 * check.bare / check.rays : 0, 3) +
-                      " %. Move pillars into the gaps, or make them higher or wider.");
+      notes.push_back(
+          name + " sees " + with_digits(100 * check.seen_share(), 3) + " % of its model: rays meet no pillar at " +
+          with_digits(check.rays > 0 ? 100.0 * check.nothing / check.rays : 0, 3) + " % of it and a bare surface at " +
+          with_digits(check.rays > 0 ? 100.0 * check.bare / check.rays : 0, 3) +
+          " %. Move pillars into the gaps, or make them higher or wider.");
     if (relief.pieces_without_vertices > 0)
       notes.push_back(name + " has " + std::to_string(relief.pieces_without_vertices) +
                       " surfaces that are narrower than the triangles of its model and stay bare: a model with more "
@@ -217,8 +218,9 @@ OperationResult run_relief_forest(const OperationCall& call, const ForestOptions
   std::vector<ViewFrame> frames;
   std::vector<const ViewFrame*> of_views;
   for (std::size_t v = 0; v < input.models.size(); ++v)
-    frames.push_back(make_view_frame(input.models[v]->model.mesh,
-                                     ForestView(input.file.scene.viewpoints[v]).relief_options(options_of_solver(options))));
+    frames.push_back(
+        make_view_frame(input.models[v]->model.mesh,
+                        ForestView(input.file.scene.viewpoints[v]).relief_options(options_of_solver(options))));
   for (const ViewFrame& frame : frames) of_views.push_back(&frame);
   const ForestPlan plan = plan_forest(input.file.scene, of_views, options, context);
 

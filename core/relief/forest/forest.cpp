@@ -117,6 +117,7 @@ ForestPlan plan_forest(ForestScene scene, std::span<const ViewFrame* const> fram
     in_plan.from = range[0] - room;
     in_plan.to = range[1] + room;
     plan.plan_views.push_back(in_plan);
+    plan.height_shares.push_back(frames[v]->image_height);
   }
   if (options.layout != PillarLayout::scene) plan.scene.pillars = pillars_of_layout(plan, options);
   check_forest(plan.scene, gap_mm(options));
@@ -133,7 +134,6 @@ SolvedForest solve_forest(const ForestPlan& plan,
   SolvedForest forest;
   const std::size_t views = plan.views.size();
   const std::vector<Pillar>& pillars = plan.scene.pillars;
-  const WallSpace space{options.thickness_mm, options.carve_depth_mm};
   Stopwatch watch;
   std::vector<ViewFrame> frames;
   std::vector<Triangles> faces;
@@ -142,14 +142,16 @@ SolvedForest solve_forest(const ForestPlan& plan,
     const auto span = context.span(begin, begin + 0.4 / static_cast<double>(views), "Solving the reliefs");
     const std::shared_ptr<ReliefSolver> solver = solver_of(v, context);
     const ReliefOptions relief = plan.views[v].relief_options(solver_options(options));
-    forest.reliefs.push_back(
-        solve_on_walls(*solver, plan.views[v], pillars, plan.walls.pieces[v], space, relief, context));
+    // Who shows a surface to others as well cannot hide what stands on it from them.
+    const ReliefSpace space({pillars, plan.plan_views, plan.strips}, v, {options.thickness_mm, options.carve_depth_mm},
+                            options.shared_walls != SharedWalls::squarest);
+    forest.reliefs.push_back(solve_on_walls(*solver, plan.views[v], space, plan.walls.pieces[v], relief, context));
     frames.push_back(solver->frame());
     faces.push_back(solver->F());
     forest.grids.emplace_back();
     for (std::size_t k = 0; k < forest.reliefs[v].pieces.size(); ++k)
-      forest.grids[v].push_back(piece_grid(forest.reliefs[v], static_cast<int>(k), plan.views[v], pillars, space,
-                                           {options.pixel_mm}, context));
+      forest.grids[v].push_back(
+          piece_grid(forest.reliefs[v], static_cast<int>(k), plan.views[v], space, {options.pixel_mm}, context));
   }
   forest.seconds_solve = watch.lap();
   {

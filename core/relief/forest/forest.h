@@ -16,6 +16,7 @@ struct ForestPlan {
   ForestScene scene;  // with its pillars, outlines counter-clockwise
   std::vector<ForestView> views;
   std::vector<PlanView> plan_views;            // with the models' ranges of tangents
+  std::vector<double> height_shares;           // height of each model's picture as a share of its width
   std::vector<std::vector<WallStrip>> strips;  // what each viewpoint sees
   WallAssignment walls;
 };

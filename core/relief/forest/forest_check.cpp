@@ -9,10 +9,37 @@
 namespace formwright {
 namespace {
 
-constexpr double on_surface_mm = 0.01, beyond_mm = 1e7;
+constexpr double on_surface_mm = 0.01, depth_tolerance_mm = 0.03, beyond_mm = 1e7;
 constexpr std::size_t lines_a_chunk = 4;
 
 enum class Met : char { outside, seen, bare, nothing, intruding };
+
+/// Whether a viewpoint's ray ends on the relief as its piece has it there or within a pixel.
+bool is_on_piece(const CheckedView& of, int pillar, const Vec3& point) {
+  const RayPoint p = of.view.ray_point(point);
+  for (const PieceGrid& grid : of.grids) {
+    if (grid.pillar != pillar) continue;
+    const auto after = std::ranges::upper_bound(grid.aside, p.aside);
+    const int column = std::clamp(static_cast<int>(after - grid.aside.begin()) - 1, 0, grid.columns() - 2);
+    const double pixel =
+        grid.aside[static_cast<std::size_t>(column) + 1] - grid.aside[static_cast<std::size_t>(column)];
+    if (p.aside < grid.aside.front() - pixel || p.aside > grid.aside.back() + pixel) continue;
+    const double z = of.view.eye().z() + p.above * grid.reach[static_cast<std::size_t>(column)].surface;
+    const int row = static_cast<int>(std::floor((z - grid.z_mm.front()) / (grid.z_mm[1] - grid.z_mm[0])));
+    double nearest = INFINITY, farthest = -INFINITY;
+    for (int r = std::max(0, row - 1); r <= std::min(grid.rows() - 2, row + 1); ++r)
+      for (int c = std::max(0, column - 1); c <= std::min(grid.columns() - 2, column + 1); ++c) {
+        if (!grid.covered[grid.cell(c, r)]) continue;
+        for (const std::size_t node :
+             {grid.node(c, r), grid.node(c + 1, r), grid.node(c, r + 1), grid.node(c + 1, r + 1)}) {
+          nearest = std::min(nearest, grid.front[node]);
+          farthest = std::max(farthest, grid.front[node]);
+        }
+      }
+    if (p.ahead >= nearest - depth_tolerance_mm && p.ahead <= farthest + depth_tolerance_mm) return true;
+  }
+  return false;
+}
 
 /// Whether a point belongs to one of a viewpoint's pieces on this pillar, up to `margin_mm`.
 bool belongs_to(const CheckedView& of, int pillar, const Vec3& point, double margin_mm) {
@@ -97,14 +124,17 @@ ViewCheck check_view(std::span<const CheckedView> views, std::size_t own, std::s
         one.pillar = forest.face_pillar[static_cast<std::size_t>(hit->face)];
         const Vec3 point = of.view.eye() + hit->distance * direction;
         const Pillar& pillar = pillars[static_cast<std::size_t>(one.pillar)];
+        one.met = Met::seen;
+        if (is_on_piece(of, one.pillar, point)) continue;
         one.met = Met::bare;
         if (point.z() >= pillar.height_mm - on_surface_mm || point.z() <= on_surface_mm ||
             distance_to_outline(pillar.outline_mm, point.head<2>()) <= on_surface_mm)
           continue;
-        if (belongs_to(of, one.pillar, point, pixel_mm)) one.met = Met::seen;
-        else
-          for (std::size_t v = 0; v < views.size(); ++v)
-            if (v != own && belongs_to(views[v], one.pillar, point, pixel_mm)) one.met = Met::intruding;
+        // Walls beside its own relief are its own, too.
+        for (std::size_t v = 0; v < views.size(); ++v)
+          if (v != own && belongs_to(views[v], one.pillar, point, pixel_mm) &&
+              !belongs_to(of, one.pillar, point, pixel_mm))
+            one.met = Met::intruding;
       }
   });
   ViewCheck check;

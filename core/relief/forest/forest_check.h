@@ -38,9 +38,9 @@ struct ViewCheck {
   int worst_pillar() const;  // with most of the intruding rays; -1 without any
 };
 
-/// `across`: rays across the model's width. A ray counts as seen where it meets its own piece within a pixel of
-/// `pixel_mm`; on the surface of a pillar, within a hundredth of a millimetre, it meets no piece. `own`: index of the
-/// viewpoint in `views`. Throws Error: cancelled.
+/// `across`: rays across the model's width. A ray counts as seen where it ends at the depth that its own piece has
+/// there or within a pixel of `pixel_mm`, up to 0.03 mm; on the surface of a pillar, within 0.01 mm, it meets no piece.
+/// `own`: index of the viewpoint in `views`. Throws Error: cancelled.
 ViewCheck check_view(std::span<const CheckedView> views, std::size_t own, std::span<const Pillar> pillars,
                      const StandingForest& forest, const RayCaster& caster, int across, double pixel_mm,
                      Context& context);

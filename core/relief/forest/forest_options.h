@@ -43,13 +43,13 @@ struct ForestOptions {
   int seed = 1;
   SharedWalls shared_walls = SharedWalls::bare;
   Intrusion intrusion = Intrusion::refused;
-  double pin_diameter_mm = 5;
+  double pin_diameter_mm = 4;
   double pin_depth_mm = 8;
   double pin_clearance_mm = 0.2;
   BoundedVertices bounded_vertices = BoundedVertices::all;
   double hidden_weight = 1;
   bool depth_order = true;
-  double pixel_mm = 0.4;
+  double pixel_mm = 0.3;
   int check_rays = 240;
   int picture_pixels = 720;
 

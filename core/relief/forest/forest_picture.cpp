@@ -13,7 +13,7 @@ namespace formwright {
 namespace {
 
 constexpr int rays_a_side = 2;  // of a pixel
-constexpr double height_share = 0.8, wider_than_model = 1.6;
+constexpr double picture_height_share = 0.8, more_than_model = 1.35;
 constexpr double ambient = 0.12, matt = 0.75, floor_brightness = 0.86, sky_brightness = 1;
 constexpr std::size_t picture_lines_a_chunk = 4;
 constexpr double horizon_mm = 1e7;
@@ -30,8 +30,9 @@ Eigen::Matrix3d camera_axes(const ForestCamera& camera) {
 
 }  // namespace
 
-ForestCamera camera_of(const ForestViewpoint& viewpoint) {
-  return {viewpoint.eye_mm, viewpoint.look_at_mm, wider_than_model * viewpoint.width_mm};
+ForestCamera camera_of(const ForestViewpoint& viewpoint, double height_share) {
+  return {viewpoint.eye_mm, viewpoint.look_at_mm,
+          more_than_model * viewpoint.width_mm * std::max(1.0, height_share / picture_height_share)};
 }
 
 ForestCamera camera_from_elsewhere(const ForestScene& scene) {
@@ -71,7 +72,7 @@ ForestCamera camera_from_elsewhere(const ForestScene& scene) {
 Image picture_of_forest(const StandingForest& forest, const RayCaster& caster, const ForestCamera& camera, int pixels,
                         Context& context) {
   const int width = rays_a_side * pixels,
-            height = rays_a_side * std::max(1, static_cast<int>(std::lround(height_share * pixels)));
+            height = rays_a_side * std::max(1, static_cast<int>(std::lround(picture_height_share * pixels)));
   Image image(width, height, Rgba{255, 255, 255, 255});
   const Eigen::Matrix3d axes = camera_axes(camera);
   const double distance = (camera.look_at_mm - camera.eye_mm).norm(), pitch = camera.width_mm / width;

@@ -14,8 +14,8 @@ struct ForestCamera {
   double width_mm = 0;
 };
 
-/// What a viewpoint sees, a little wider than its model.
-ForestCamera camera_of(const ForestViewpoint& viewpoint);
+/// What a viewpoint sees, a little more than its model. `height_share`: height of the model as a share of its width.
+ForestCamera camera_of(const ForestViewpoint& viewpoint, double height_share);
 /// From between the first two viewpoints that are not beside each other, higher up and far enough to see all pillars;
 /// with one viewpoint, from its side.
 ForestCamera camera_from_elsewhere(const ForestScene& scene);

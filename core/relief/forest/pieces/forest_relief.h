@@ -6,15 +6,11 @@
 
 #include "geometry/queries/ray_caster.h"
 #include "relief/forest/pieces/forest_view.h"
+#include "relief/forest/plan/relief_space.h"
 #include "relief/forest/plan/wall_pieces.h"
 #include "relief/relief.h"
 
 namespace formwright {
-
-/// How far reliefs may stand before the pillars' surfaces and be carved into them.
-struct WallSpace {
-  double above_mm = 0, below_mm = 0;
-};
 
 /// A solved viewpoint.
 struct ForestRelief {
@@ -27,15 +23,15 @@ struct ForestRelief {
 };
 
 /// Bounds of every vertex from the pillars' surface on its ray, with a group for each piece. Vertices whose rays meet
-/// no piece are free. Pieces without vertices are taken out of `pieces`, and counted.
-DepthBounds wall_bounds(const ForestView& view, const ViewFrame& frame, std::span<const Pillar> pillars,
-                        std::vector<WallPiece>& pieces, const WallSpace& space, const ReliefOptions& options,
-                        const Visibility& visibility, int& pieces_without_vertices, Context& context);
+/// no piece, or one without space for a relief, are free. Pieces without vertices are taken out of `pieces`, and
+/// counted.
+DepthBounds wall_bounds(const ForestView& view, const ViewFrame& frame, const ReliefSpace& space,
+                        std::vector<WallPiece>& pieces, const ReliefOptions& options, const Visibility& visibility,
+                        int& pieces_without_vertices, Context& context);
 
 /// `solver`: of the viewpoint's model and view.relief_options(options).
 /// Throws Error: invalid_input "scene" (no vertex of the model before a pillar); see ReliefSolver::solve.
-ForestRelief solve_on_walls(ReliefSolver& solver, const ForestView& view, std::span<const Pillar> pillars,
-                            std::vector<WallPiece> pieces, const WallSpace& space, const ReliefOptions& options,
-                            Context& context);
+ForestRelief solve_on_walls(ReliefSolver& solver, const ForestView& view, const ReliefSpace& space,
+                            std::vector<WallPiece> pieces, const ReliefOptions& options, Context& context);
 
 }  // namespace formwright

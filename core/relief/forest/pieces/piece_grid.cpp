@@ -82,6 +82,21 @@ void fill_missed(PieceGrid& grid, const std::vector<char>& hit, const std::vecto
     }
 }
 
+/// Sight may end between two columns, and triangles join them: both have the space that the narrower one has.
+void narrow_to_neighbours(std::vector<WallReach>& columns, std::vector<WallReach>& middles) {
+  const auto room = [](const WallReach& reach) { return reach.surface - reach.near; };
+  std::vector<double> narrowest;
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    narrowest.push_back(room(columns[c]));
+    for (const std::size_t m : {c - 1, c})
+      if (m < middles.size())
+        narrowest.back() = std::min({narrowest.back(), room(middles[m]), room(columns[m]), room(columns[m + 1])});
+  }
+  for (std::size_t c = 0; c < columns.size(); ++c) columns[c].near = columns[c].surface - narrowest[c];
+  for (std::size_t m = 0; m < middles.size(); ++m)
+    middles[m].near = middles[m].surface - std::min({room(middles[m]), narrowest[m], narrowest[m + 1]});
+}
+
 }  // namespace
 
 void part_crosswise_cells(std::vector<char>& covered, int columns, int rows) {
@@ -113,10 +128,10 @@ double node_count(const PlanView& plan, const Pillar& pillar, const WallPiece& p
   return columns * std::ceil(pillar.height_mm / sizes.pixel_mm + 1);
 }
 
-PieceGrid piece_grid(const ForestRelief& relief, int piece, const ForestView& view, std::span<const Pillar> pillars,
-                     const WallSpace& space, const PieceGridSizes& sizes, const Context& context) {
+PieceGrid piece_grid(const ForestRelief& relief, int piece, const ForestView& view, const ReliefSpace& space,
+                     const PieceGridSizes& sizes, const Context& context) {
   const WallPiece& wall = relief.pieces[static_cast<std::size_t>(piece)];
-  const Pillar& pillar = pillars[static_cast<std::size_t>(wall.pillar)];
+  const Pillar& pillar = space.pillar(wall.pillar);
   const PlanView& plan = view.plan();
   PieceGrid grid;
   grid.pillar = wall.pillar;
@@ -130,27 +145,25 @@ PieceGrid piece_grid(const ForestRelief& relief, int piece, const ForestView& vi
       edge.push_back(s.edge);
     }
   }
-  const auto reach_at = [&](double aside, int on_edge) {
-    return wall_reach(plan, pillar, on_edge, aside, space.above_mm, space.below_mm);
-  };
+  const auto reach_at = [&](double aside, int on_edge) { return space.reach(wall.pillar, on_edge, aside); };
   for (std::size_t c = 0; c < grid.aside.size(); ++c) grid.reach.push_back(reach_at(grid.aside[c], edge[c]));
   const double bottom = sizes.border_inset_mm, top = pillar.height_mm - sizes.border_inset_mm;
   const int row_steps = steps_of(top - bottom, sizes.pixel_mm);
   for (int k = 0; k <= row_steps; ++k) grid.z_mm.push_back(bottom + (top - bottom) * k / row_steps);
 
-  const double eye_z = view.eye().z(), proud = std::min(proud_mm, proud_share * space.above_mm);
+  const double eye_z = view.eye().z(), proud = std::min(proud_mm, proud_share * space.space().above_mm);
   // Distances ahead are shorter than those along the ray by the length of its direction.
   const auto farthest = [&](const WallReach& reach, double aside) {
-    return space.below_mm > 0 ? reach.far : reach.surface - proud / std::sqrt(1 + aside * aside);
+    return space.space().below_mm > 0 ? reach.far : reach.surface - proud / std::sqrt(1 + aside * aside);
   };
   std::vector<double> limit, middle_aside;
   std::vector<WallReach> middle_reach;
-  for (std::size_t c = 0; c < grid.aside.size(); ++c) {
-    limit.push_back(farthest(grid.reach[c], grid.aside[c]));
-    if (c == 0) continue;
+  for (std::size_t c = 1; c < grid.aside.size(); ++c) {
     middle_aside.push_back(0.5 * (grid.aside[c - 1] + grid.aside[c]));
     middle_reach.push_back(reach_at(middle_aside.back(), edge[c]));
   }
+  narrow_to_neighbours(grid.reach, middle_reach);
+  for (std::size_t c = 0; c < grid.aside.size(); ++c) limit.push_back(farthest(grid.reach[c], grid.aside[c]));
   const RayDepth depth(relief, piece, view);
   const std::size_t columns = grid.aside.size(), rows = grid.z_mm.size();
   grid.front.assign(columns * rows, 0);
@@ -180,6 +193,7 @@ PieceGrid piece_grid(const ForestRelief& relief, int piece, const ForestView& vi
         const auto met = depth(middle_aside[c], (z - eye_z) / reach.surface);
         if (!met) continue;
         const double last = farthest(reach, middle_aside[c]);
+        if (reach.near >= last) continue;
         const double ahead = std::clamp(*met, std::min(reach.near, last), last);
         const std::size_t cell = row * (columns - 1) + c;
         grid.middle_front[cell] = ahead;

@@ -41,10 +41,10 @@ void part_crosswise_cells(std::vector<char>& covered, int columns, int rows);
 /// How many nodes a grid would have.
 double node_count(const PlanView& plan, const Pillar& pillar, const WallPiece& piece, const PieceGridSizes& sizes);
 
-/// Rays are cast at `relief.surface`, and what they meet is kept within `space` at every node. Where nothing is carved,
-/// the relief stands before the surface by a twentieth of a millimetre at least, so that it is a part of the solid.
-/// Throws Error: cancelled.
-PieceGrid piece_grid(const ForestRelief& relief, int piece, const ForestView& view, std::span<const Pillar> pillars,
-                     const WallSpace& space, const PieceGridSizes& sizes, const Context& context);
+/// Rays are cast at `relief.surface`, and what they meet is kept within `space` at every node and its neighbours. Where
+/// nothing is carved, the relief stands before the surface by a twentieth of a millimetre at least, so that it is a
+/// part of the solid; where there is no space for that, it is left out. Throws Error: cancelled.
+PieceGrid piece_grid(const ForestRelief& relief, int piece, const ForestView& view, const ReliefSpace& space,
+                     const PieceGridSizes& sizes, const Context& context);
 
 }  // namespace formwright

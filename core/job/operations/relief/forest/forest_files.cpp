@@ -110,7 +110,8 @@ Bytes forest_pictures(const ForestPlan& plan, const SolvedForest& forest, int pi
   for (std::size_t v = 0; v < plan.views.size(); ++v) {
     const ForestViewpoint& viewpoint = plan.scene.viewpoints[v];
     zip.add_stored("viewpoint_" + std::to_string(v + 1) + "_" + file_word(viewpoint.model) + ".png",
-                   write_png(picture_of_forest(forest.standing, *forest.caster, camera_of(viewpoint), pixels, context),
+                   write_png(picture_of_forest(forest.standing, *forest.caster,
+                                               camera_of(viewpoint, plan.height_shares[v]), pixels, context),
                              0, context));
   }
   zip.add_stored("elsewhere.png", write_png(picture_of_forest(forest.standing, *forest.caster,

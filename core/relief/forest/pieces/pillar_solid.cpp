@@ -99,6 +99,39 @@ TriangleMesh on_file_grid(const TriangleMesh& mesh) {
   return mesh;
 }
 
+/// The largest part: carving can cut crumbs loose, and pieces can enclose hollows.
+TriangleMesh largest_part(const TriangleMesh& mesh) {
+  const std::vector<int> part = vertex_components(Adjacency(mesh)).of;
+  std::map<int, double> volume;
+  for (Eigen::Index f = 0; f < mesh.F.rows(); ++f) {
+    const Vec3 a = mesh.V.row(mesh.F(f, 0)), b = mesh.V.row(mesh.F(f, 1)), c = mesh.V.row(mesh.F(f, 2));
+    volume[part[static_cast<std::size_t>(mesh.F(f, 0))]] += a.dot(b.cross(c));
+  }
+  if (volume.size() < 2) return mesh;
+  const int largest = std::ranges::max_element(volume, {}, [](const auto& one) { return one.second; })->first;
+  TriangleMesh result;
+  std::vector<int> moved(part.size(), -1);
+  std::vector<Vec3> places;
+  result.F.resize(mesh.F.rows(), 3);
+  Eigen::Index faces = 0;
+  for (Eigen::Index f = 0; f < mesh.F.rows(); ++f) {
+    if (part[static_cast<std::size_t>(mesh.F(f, 0))] != largest) continue;
+    for (int k = 0; k < 3; ++k) {
+      int& vertex = moved[static_cast<std::size_t>(mesh.F(f, k))];
+      if (vertex < 0) {
+        vertex = static_cast<int>(places.size());
+        places.emplace_back(mesh.V.row(mesh.F(f, k)));
+      }
+      result.F(faces, k) = vertex;
+    }
+    ++faces;
+  }
+  result.F.conservativeResize(faces, 3);
+  result.V.resize(static_cast<Eigen::Index>(places.size()), 3);
+  for (std::size_t i = 0; i < places.size(); ++i) result.V.row(static_cast<Eigen::Index>(i)) = places[i].transpose();
+  return result;
+}
+
 }  // namespace
 
 Vec2 checked_pin_place(const Pillar& pillar, int number, const BasePin& pin) {
@@ -130,7 +163,7 @@ PillarSolid pillar_solid(const Pillar& pillar, int number, const BasePin& pin, s
   for (const PieceSolids& piece : pieces)
     if (piece.room.F.rows() > 0) solid = subtract(solid, exact(piece.room), context);
   for (const PieceSolids& piece : pieces) solid = unite(solid, exact(piece.raised), context);
-  result.mesh = on_file_grid(solid.mesh());
+  result.mesh = largest_part(on_file_grid(solid.mesh()));
   result.volume_mm3 = signed_volume(result.mesh);
   result.watertight = Adjacency(result.mesh).is_closed();
   return result;

@@ -26,7 +26,8 @@ struct PillarSolid {
 Vec2 checked_pin_place(const Pillar& pillar, int number, const BasePin& pin);
 
 /// The pillar without pieces, with pin and mark, has the rooms cut out and then the raised pieces added, exactly.
-/// `number` counts from 1. Throws Error: see checked_pin_place; could_not_solve, cancelled.
+/// Crumbs that carving cuts loose are left out. `number` counts from 1. Throws Error: see checked_pin_place;
+/// could_not_solve, cancelled.
 PillarSolid pillar_solid(const Pillar& pillar, int number, const BasePin& pin, std::span<const PieceSolids> pieces,
                          Context& context);
 

@@ -34,7 +34,8 @@ std::vector<Pillar> pillars_of_layout(const ForestPlan& plan, const ForestOption
     area.centre += viewpoint.look_at_mm.head<2>() / static_cast<double>(plan.scene.viewpoints.size());
   const auto seed = static_cast<std::uint64_t>(options.seed);
   switch (options.layout) {
-    case PillarLayout::grid: return grid_of_pillars(area, options.grid_columns, options.grid_rows, kind);
+    case PillarLayout::grid:
+      return grid_of_pillars(area, options.grid_columns, options.grid_rows, options.grid_turn_deg, kind);
     case PillarLayout::random: return random_pillars(area, options.pillar_count, kind, seed);
     default:
       if (options.screen_inner_mm >= options.screen_outer_mm)
@@ -55,8 +56,6 @@ void check_sizes(const ForestPlan& plan, const ForestOptions& options) {
                 "The pieces would have more than " + with_digits(max_nodes / 1e6, 2) +
                     " million points: raise the detail spacing (pixel_mm) to " +
                     with_digits(1.01 * options.pixel_mm * std::sqrt(nodes / max_nodes), 2) + " mm or more.");
-  for (std::size_t p = 0; p < plan.scene.pillars.size(); ++p)
-    checked_pin_place(plan.scene.pillars[p], static_cast<int>(p) + 1, {options.pin_diameter_mm, options.pin_depth_mm});
 }
 
 std::string name_of(const ForestPlan& plan, std::size_t view) {
@@ -123,6 +122,9 @@ ForestPlan plan_forest(ForestScene scene, std::span<const ViewFrame* const> fram
   check_forest(plan.scene, gap_mm(options));
   orient_outlines(plan.scene);
   for (const PlanView& view : plan.plan_views) plan.strips.push_back(seen_walls(view, plan.scene.pillars, context));
+  for (std::size_t p = 0; p < plan.scene.pillars.size(); ++p)
+    plan.pins_mm.push_back(checked_pin_place(plan.scene.pillars[p], static_cast<int>(p) + 1,
+                                             {options.pin_diameter_mm, options.pin_depth_mm}));
   plan.walls = assign_walls(plan.plan_views, plan.scene.pillars, plan.strips, options.shared_walls, min_piece_width_mm);
   return plan;
 }

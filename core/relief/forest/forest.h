@@ -19,11 +19,12 @@ struct ForestPlan {
   std::vector<double> height_shares;           // height of each model's picture as a share of its width
   std::vector<std::vector<WallStrip>> strips;  // what each viewpoint sees
   WallAssignment walls;
+  std::vector<Vec2> pins_mm;  // place of each pillar's pin
 };
 
 /// `frames`: of each viewpoint's model, by make_view_frame and ForestView::relief_options. Pillars are made where
 /// `options.layout` asks for them, and replace those of the scene.
-/// Throws Error{invalid_input}: see check_forest, assign_walls and the layouts.
+/// Throws Error{invalid_input}: see check_forest, checked_pin_place, assign_walls and the layouts.
 ForestPlan plan_forest(ForestScene scene, std::span<const ViewFrame* const> frames, const ForestOptions& options,
                        Context& context);
 
@@ -38,7 +39,7 @@ struct SolvedForest {
 };
 
 /// `solver_of`: (viewpoint, context) -> the solver of its model, which must live until the next call.
-/// Throws Error: invalid_input "pixel_mm" (too many points), "pin_diameter_mm", "intrusion" (a piece of another model
+/// Throws Error: invalid_input "pixel_mm" (too many points), "intrusion" (a piece of another model
 /// shows within a picture and that is refused); see solve_on_walls and pillar_solid.
 SolvedForest solve_forest(const ForestPlan& plan,
                           const std::function<std::shared_ptr<ReliefSolver>(std::size_t, Context&)>& solver_of,

@@ -36,6 +36,7 @@ struct ForestOptions {
   int pillar_count = 40;
   int grid_columns = 6;
   int grid_rows = 6;
+  double grid_turn_deg = 20;
   double area_width_mm = 240;
   double area_depth_mm = 240;
   double screen_outer_mm = 160;
@@ -97,6 +98,11 @@ struct ForestOptions {
           .group("Pillars")
           .only_with("layout", "grid")
           .slider(2, 12),
+      parameter("grid_turn_deg", &ForestOptions::grid_turn_deg, "Turn of the grid", unit::degrees, -180, 180,
+                "Turns the grid, counter-clockwise. At 0° lines of sight along its rows pass between all pillars.")
+          .group("Pillars")
+          .only_with("layout", "grid")
+          .slider(0, 45),
       parameter("area_width_mm", &ForestOptions::area_width_mm, "Width of the area", unit::mm, 1, 100000,
                 "From the leftmost to the rightmost middle of a pillar, about what the viewpoints look at.")
           .group("Pillars")

@@ -37,12 +37,12 @@ bool are_equal(const std::vector<Pillar>& a, const std::vector<Pillar>& b) {
 }
 
 TEST_CASE("ForestLayout.AGridIsEven") {
-  const auto pillars = grid_of_pillars({{10, 20}, 100, 60}, 5, 3, {PillarShape::square, 8, 50, 2});
+  const auto pillars = grid_of_pillars({{10, 20}, 100, 60}, 5, 3, 0, {PillarShape::square, 8, 50, 2});
   REQUIRE(pillars.size() == 15);
   CHECK((outline_centroid(pillars[0].outline_mm) - Vec2(-40, -10)).norm() < 1e-5);
   CHECK((outline_centroid(pillars[14].outline_mm) - Vec2(60, 50)).norm() < 1e-5);
   CHECK_THAT(closest(pillars), WithinAbs(25 - 8, 1e-5));
-  CHECK_THROWS_AS(grid_of_pillars({{0, 0}, 100, 60}, 13, 3, {PillarShape::square, 8, 50, 2}), Error);
+  CHECK_THROWS_AS(grid_of_pillars({{0, 0}, 100, 60}, 13, 3, 0, {PillarShape::square, 8, 50, 2}), Error);
 }
 
 TEST_CASE("ForestLayout.RandomPillarsKeepTheirDistanceAndFollowTheSeed") {

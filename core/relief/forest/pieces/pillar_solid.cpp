@@ -142,14 +142,15 @@ Vec2 checked_pin_place(const Pillar& pillar, int number, const BasePin& pin) {
                 "Pillar " + std::to_string(number) + " is too narrow for its pin: make the pin at most " +
                     with_digits(std::max(0.0, std::floor(20 * (room - pin_wall_mm)) / 10), 3) +
                     " mm thick, or the pillar wider.");
-  return place;
+  // On the grid of files, so that the solid can be moved to its pin without rounding.
+  constexpr double steps_a_mm = 1024;
+  return (place * steps_a_mm).array().round() / steps_a_mm;
 }
 
 PillarSolid pillar_solid(const Pillar& pillar, int number, const BasePin& pin, std::span<const PieceSolids> pieces,
                          Context& context) {
   PillarSolid result;
-  // On the grid of the file, so that the solid can be moved to it without rounding.
-  result.pin_mm = (checked_pin_place(pillar, number, pin) * 1024).array().round() / 1024;
+  result.pin_mm = checked_pin_place(pillar, number, pin);
   const auto exact = [&](const TriangleMesh& mesh) { return ExactSolid::from_mesh(mesh, "scene", context); };
   const double into_pillar = std::min(max_into_pillar_mm, into_pillar_share * pillar.height_mm);
   // Grooves are cut first: they must not go into the pin.

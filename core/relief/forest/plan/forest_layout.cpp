@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 
 #include "base/error.h"
@@ -78,16 +79,18 @@ bool add_screen(std::size_t own, std::span<const PlanView> views, double outer_m
 
 }  // namespace
 
-std::vector<Pillar> grid_of_pillars(const FloorArea& area, int columns, int rows, const PillarKind& kind) {
-  const auto place = [](double middle, double size, int k, int count) {
-    return count == 1 ? middle : middle + size * (static_cast<double>(k) / (count - 1) - 0.5);
+std::vector<Pillar> grid_of_pillars(const FloorArea& area, int columns, int rows, double turn_deg,
+                                    const PillarKind& kind) {
+  const double angle = turn_deg * std::numbers::pi / 180, c = std::cos(angle), s = std::sin(angle);
+  const auto place = [](double size, int k, int count) {
+    return count == 1 ? 0.0 : size * (static_cast<double>(k) / (count - 1) - 0.5);
   };
   std::vector<Pillar> pillars;
   for (int row = 0; row < rows; ++row)
     for (int column = 0; column < columns; ++column) {
-      const Vec2 centre(place(area.centre.x(), area.width_mm, column, columns),
-                        place(area.centre.y(), area.depth_mm, row, rows));
-      const Outline outline = outline_of(shape_of(kind.shape, pillars.size()), centre, kind.width_mm, 0);
+      const double x = place(area.width_mm, column, columns), y = place(area.depth_mm, row, rows);
+      const Vec2 centre = area.centre + Vec2(c * x - s * y, s * x + c * y);
+      const Outline outline = outline_of(shape_of(kind.shape, pillars.size()), centre, kind.width_mm, turn_deg);
       if (!has_room(outline, pillars, kind.gap_mm))
         throw Error(ErrorCode::invalid_input, "pillar_width_mm",
                     "Pillars of the grid would stand closer than " + with_digits(kind.gap_mm, 3) +

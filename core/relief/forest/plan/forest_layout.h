@@ -32,9 +32,11 @@ struct FloorArea {
   double width_mm = 0, depth_mm = 0;
 };
 
-/// `columns` x `rows` pillars, evenly spread over the area from edge to edge; the shapes of `mixed` take turns.
+/// `columns` x `rows` pillars, evenly spread over the area from edge to edge, which is turned counter-clockwise about
+/// its middle; the shapes of `mixed` take turns.
 /// Throws Error{invalid_input, "pillar_width_mm"} where they would stand closer than the gap.
-std::vector<Pillar> grid_of_pillars(const FloorArea& area, int columns, int rows, const PillarKind& kind);
+std::vector<Pillar> grid_of_pillars(const FloorArea& area, int columns, int rows, double turn_deg,
+                                    const PillarKind& kind);
 
 /// `count` pillars at random places and turns; equal seeds give equal pillars. Throws Error{invalid_input,
 /// "pillar_count"} where no room is found for so many.

@@ -15,6 +15,7 @@ namespace {
 
 constexpr double plan_margin_mm = 20, number_height_mm = 2.5, viewpoint_height_mm = 6;
 constexpr int hole_corners = 96;
+constexpr double seen_beyond = 1.5;  // of the distance of what is looked at
 
 CutPath outline_path(CutLayer layer, const Outline& outline, const Vec2& origin, const std::string& name) {
   CutPath path{layer, {}, true, name};
@@ -37,7 +38,8 @@ std::string numbered(std::size_t index, std::size_t count) {
   return std::string(digits - std::min(digits, number.size()), '0') + number;
 }
 
-CutSheet floor_plan(const ForestPlan& plan, std::span<const Vec2> pins, double hole_diameter_mm) {
+CutSheet floor_plan(const ForestPlan& plan, double hole_diameter_mm) {
+  const std::vector<Vec2>& pins = plan.pins_mm;
   Vec2 low = Vec2::Constant(INFINITY), high = -low;
   for (const Pillar& pillar : plan.scene.pillars)
     for (const Vec2& p : pillar.outline_mm) {
@@ -79,6 +81,40 @@ CutSheet floor_plan(const ForestPlan& plan, std::span<const Vec2> pins, double h
       sheet.paths.push_back(std::move(path));
   }
   return sheet;
+}
+
+Json plan_json(const ForestPlan& plan) {
+  const auto place = [](const Vec2& p) { return Json{p.x(), p.y()}; };
+  Json views = Json::array(), pillars = Json::array();
+  for (std::size_t v = 0; v < plan.views.size(); ++v) {
+    const PlanView& view = plan.plan_views[v];
+    const auto on_wall = [&](const WallStrip& s, double t) {
+      const Outline& outline = plan.scene.pillars[static_cast<std::size_t>(s.pillar)].outline_mm;
+      return view.at(t, view.meets_line(t, corner(outline, s.edge), corner(outline, s.edge + 1)));
+    };
+    // Where rays meet nothing, the area ends beyond what is looked at.
+    const double beyond = seen_beyond * view.distance_mm;
+    Json sight = {place(view.eye)}, surfaces = Json::array();
+    double t = view.from;
+    for (const WallStrip& s : plan.strips[v]) {
+      if (s.from > t) sight.insert(sight.end(), {place(view.at(t, beyond)), place(view.at(s.from, beyond))});
+      sight.insert(sight.end(), {place(on_wall(s, s.from)), place(on_wall(s, s.to))});
+      t = s.to;
+    }
+    if (t < view.to) sight.insert(sight.end(), {place(view.at(t, beyond)), place(view.at(view.to, beyond))});
+    for (const WallPiece& piece : plan.walls.pieces[v]) {
+      Json line = {place(on_wall(piece.strips.front(), piece.from()))};
+      for (const WallStrip& s : piece.strips) line.push_back(place(on_wall(s, s.to)));
+      surfaces.push_back({{"pillar", piece.pillar + 1}, {"line_mm", line}});
+    }
+    views.push_back({{"eye_mm", place(view.eye)}, {"sight_mm", sight}, {"surfaces", surfaces}});
+  }
+  for (const Pillar& pillar : plan.scene.pillars) {
+    Json outline = Json::array();
+    for (const Vec2& p : pillar.outline_mm) outline.push_back(place(p));
+    pillars.push_back(outline);
+  }
+  return {{"viewpoints", views}, {"pillars_mm", pillars}};
 }
 
 Model standing_pillars(const SolvedForest& forest) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 // The files of a forest of pillars.
+#include "base/data/json.h"
 #include "fabrication/sheet/cut_sheet.h"
 #include "relief/forest/forest.h"
 
@@ -10,8 +11,12 @@ namespace formwright {
 std::string numbered(std::size_t index, std::size_t count);
 
 /// The floor at true size, x right and y back: holes for the pins to cut, outlines and turning marks to mark, numbers
-/// of pillars to engrave, and where the viewpoints are as notes. `pins`: places of the pins, one a pillar.
-CutSheet floor_plan(const ForestPlan& plan, std::span<const Vec2> pins, double hole_diameter_mm);
+/// of pillars to engrave, and where the viewpoints are as notes.
+CutSheet floor_plan(const ForestPlan& plan, double hole_diameter_mm);
+
+/// For drawing from above: of each viewpoint its eye, the area that it sees in its range, and the lines of the surfaces
+/// that are its own; outlines of pillars.
+Json plan_json(const ForestPlan& plan);
 
 /// All pillars where they stand, one group each, in the axes of the floor.
 Model standing_pillars(const SolvedForest& forest);

@@ -38,25 +38,31 @@ std::vector<InputInfo> forest_inputs() {
 }
 
 std::vector<OutputInfo> forest_outputs() {
-  return {{"pillars.zip", "application/zip", "Pillars, STL",
-           "Every pillar with its relief and pin as a watertight solid, upright: pillar_01.stl and so on.", true},
-          {"pillars.3mf", "model/3mf", "Pillars, 3MF", "All pillars where they stand, as objects of their own.", true},
-          {"forest.glb", "model/gltf-binary", "Forest", "All pillars where they stand, for viewing.", true},
-          {"floor_plan.svg", "image/svg+xml", "Floor plan, SVG",
-           "The floor at true size: holes for the pins, outlines, numbers and how each pillar is turned.", true},
-          {"floor_plan.dxf", "image/vnd.dxf", "Floor plan, DXF", "The floor plan in mm as DXF R12, to drill or laser.",
-           true},
-          {"pictures.zip", "application/zip", "Pictures", "The forest as seen from each viewpoint and from elsewhere.",
-           true},
-          {"elsewhere.png", "image/png", "Picture from elsewhere", "The forest as seen from between two viewpoints.",
-           false},
-          {"scene.json", "application/json", "Scene", "Viewpoints and pillars, to edit and to run again.", true}};
+  return {
+      {"pillars.zip", "application/zip", "Pillars, STL",
+       "Every pillar with its relief and pin as a watertight solid, upright: pillar_01.stl and so on.", true},
+      {"pillars.3mf", "model/3mf", "Pillars, 3MF", "All pillars where they stand, as objects of their own.", true},
+      {"forest.glb", "model/gltf-binary", "Forest", "All pillars where they stand, for viewing.", true},
+      {"floor_plan.svg", "image/svg+xml", "Floor plan, SVG",
+       "The floor at true size: holes for the pins, outlines, numbers and how each pillar is turned.", true},
+      {"floor_plan.dxf", "image/vnd.dxf", "Floor plan, DXF", "The floor plan in mm as DXF R12, to drill or laser.",
+       true},
+      {"pictures.zip", "application/zip", "Pictures", "The forest as seen from each viewpoint and from elsewhere.",
+       true},
+      {"elsewhere.png", "image/png", "Picture from elsewhere", "The forest as seen from between two viewpoints.",
+       false},
+      {"scene.json", "application/json", "Scene", "Viewpoints and pillars, to edit and to run again.", true},
+      {"plan.json", "application/json", "Seen from above",
+       "What each viewpoint sees, and the surfaces that are its own, as lines in the floor plan. Without files of pillars nothing is solved for it.",
+       false}};
 }
 
 std::vector<ReportField> forest_report_fields() {
   return {
       {"viewpoints", "Viewpoints", "",
        "For each viewpoint: its model, the number of pieces, which share of the lines of sight to the model meets its own piece, a bare surface, no pillar or a piece of another model, and its shading difference."},
+      {"in_plan", "In the floor plan", "",
+       "For each viewpoint: the share of its lines of sight, seen from above, that meets a pillar, and the share that meets a surface of its own."},
       {"seen_percent_min", "Model seen", "%",
        "Share of its model that is seen whole, of the viewpoint where it is smallest; by rays at the finished solids."},
       {"intrusion_percent_max", "Pieces of other models", "%",
@@ -140,6 +146,22 @@ ReliefOptions options_of_solver(const ForestOptions& options) {
 
 Json percent(double share) { return 100 * share; }
 
+bool wants_solids(const OperationCall& call) {
+  for (const char* name : {"pillars.zip", "pillars.3mf", "forest.glb", "pictures.zip", "elsewhere.png"})
+    if (call.wants(name)) return true;
+  return false;
+}
+
+void report_plan(Json& report, const ForestPlan& plan) {
+  Json list = Json::array();
+  for (std::size_t v = 0; v < plan.views.size(); ++v)
+    list.push_back({{"model", plan.scene.viewpoints[v].model},
+                    {"met_percent", percent(plan.walls.seen_share[v])},
+                    {"own_percent", percent(plan.walls.used_share[v])}});
+  report["in_plan"] = list;
+  report["pillar_count"] = plan.scene.pillars.size();
+}
+
 void report_views(Json& report, std::vector<std::string>& notes, const ForestPlan& plan, const SolvedForest& forest) {
   Json list = Json::array();
   double seen_min = 1, intruding_max = 0;
@@ -167,9 +189,9 @@ void report_views(Json& report, std::vector<std::string>& notes, const ForestPla
           with_digits(check.rays > 0 ? 100.0 * check.bare / check.rays : 0, 3) +
           " %. Move pillars into the gaps, or make them higher or wider.");
     if (relief.pieces_without_vertices > 0)
-      notes.push_back(name + " has " + std::to_string(relief.pieces_without_vertices) +
-                      " surfaces that are narrower than the triangles of its model and stay bare: a model with more "
-                      "vertices would use them.");
+      notes.push_back(name + " leaves " + std::to_string(relief.pieces_without_vertices) +
+                      " of its surfaces bare, because they are narrower than the triangles of its model: one with "
+                      "more vertices would use them.");
   }
   report["viewpoints"] = list;
   report["seen_percent_min"] = percent(seen_min);
@@ -197,7 +219,6 @@ void report_pillars(Json& report, std::vector<std::string>& notes, const SolvedF
     watertight = watertight && pillar.watertight;
   }
   report["pillars"] = list;
-  report["pillar_count"] = forest.pillars.size();
   report["unused_pillars"] = unused;
   report["watertight"] = watertight;
   report["volume_ml"] = volume_mm3 / 1000;
@@ -224,25 +245,26 @@ OperationResult run_relief_forest(const OperationCall& call, const ForestOptions
   for (const ViewFrame& frame : frames) of_views.push_back(&frame);
   const ForestPlan plan = plan_forest(input.file.scene, of_views, options, context);
 
-  const SolvedForest forest = [&] {
+  OperationResult result;
+  Json& report = result.report;
+  std::vector<std::string> notes, repairs;
+  report_plan(report, plan);
+  SolvedForest forest;
+  // For files of the plan alone nothing is solved, so that they follow a pillar that is being dragged.
+  if (wants_solids(call)) {
     const auto span = context.span(0.1, 0.9, "Solving the reliefs");
     const auto solver_of = [&](std::size_t v, Context& c) {
       return kept_solver(call, *input.models[v], plan.views[v].relief_options(options_of_solver(options)), c);
     };
-    return solve_forest(plan, solver_of, options, context);
-  }();
+    forest = solve_forest(plan, solver_of, options, context);
+    report_views(report, notes, plan, forest);
+    report_pillars(report, notes, forest);
+  }
 
   context.progress(0.9, "Writing");
   Stopwatch watch;
-  OperationResult result;
-  Json& report = result.report;
-  std::vector<std::string> notes, repairs;
-  report_views(report, notes, plan, forest);
-  report_pillars(report, notes, forest);
-  std::vector<Vec2> pins;
-  for (const PillarSolid& pillar : forest.pillars) pins.push_back(pillar.pin_mm);
   const double hole = options.pin_diameter_mm + options.pin_clearance_mm;
-  const CutSheet floor = floor_plan(plan, pins, hole);
+  const CutSheet floor = floor_plan(plan, hole);
   report["floor_size_mm"] = {floor.width_mm, floor.height_mm};
   report["hole_diameter_mm"] = hole;
   const auto add = [&](const char* name, const auto& make) {
@@ -274,11 +296,13 @@ OperationResult run_relief_forest(const OperationCall& call, const ForestOptions
                                        options.picture_pixels, context),
                      0, context);
   });
-  add("scene.json", [&] {
-    const std::string text = forest_scene_json({plan.scene, input.file.models}).dump(1);
+  const auto json_bytes = [](const Json& json) {
+    const std::string text = json.dump(1);
     const auto bytes = std::as_bytes(std::span(text));
     return Bytes(bytes.begin(), bytes.end());
-  });
+  };
+  add("scene.json", [&] { return json_bytes(forest_scene_json({plan.scene, input.file.models})); });
+  add("plan.json", [&] { return json_bytes(plan_json(plan)); });
   report["seconds_read"] = input.seconds_read;
   report["seconds_solve"] = forest.seconds_solve;
   report["seconds_solids"] = forest.seconds_solids;

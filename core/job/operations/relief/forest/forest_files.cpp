@@ -141,19 +141,37 @@ Bytes pillar_files(const SolvedForest& forest, Context& context) {
   return zip.finish();
 }
 
-Bytes forest_pictures(const ForestPlan& plan, const SolvedForest& forest, int pixels, Context& context) {
+std::vector<Image> forest_pictures(const ForestPlan& plan, const SolvedForest& forest, int pixels, Context& context) {
+  std::vector<Image> pictures;
+  const auto from = [&](const ForestCamera& camera) {
+    pictures.push_back(picture_of_forest(forest.standing, *forest.caster, camera, pixels, context));
+  };
+  for (std::size_t v = 0; v < plan.views.size(); ++v) from(camera_of(plan.scene.viewpoints[v], plan.height_shares[v]));
+  from(camera_from_elsewhere(plan.scene));
+  return pictures;
+}
+
+Bytes picture_files(const ForestPlan& plan, const std::vector<Image>& pictures, Context& context) {
   ZipWriter zip;
-  for (std::size_t v = 0; v < plan.views.size(); ++v) {
-    const ForestViewpoint& viewpoint = plan.scene.viewpoints[v];
-    zip.add_stored("viewpoint_" + std::to_string(v + 1) + "_" + file_word(viewpoint.model) + ".png",
-                   write_png(picture_of_forest(forest.standing, *forest.caster,
-                                               camera_of(viewpoint, plan.height_shares[v]), pixels, context),
-                             0, context));
+  for (std::size_t v = 0; v < pictures.size(); ++v) {
+    const std::string name =
+        v == plan.views.size() ? "elsewhere"
+                               : "viewpoint_" + std::to_string(v + 1) + "_" + file_word(plan.scene.viewpoints[v].model);
+    zip.add_stored(name + ".png", write_png(pictures[v], 0, context));
   }
-  zip.add_stored("elsewhere.png", write_png(picture_of_forest(forest.standing, *forest.caster,
-                                                              camera_from_elsewhere(plan.scene), pixels, context),
-                                            0, context));
   return zip.finish();
+}
+
+Image overview(const std::vector<Image>& pictures) {
+  const int count = static_cast<int>(pictures.size()), columns = static_cast<int>(std::ceil(std::sqrt(count))),
+            rows = (count + columns - 1) / columns, width = pictures.front().width, height = pictures.front().height;
+  Image all(columns * width, rows * height, Rgba{255, 255, 255, 255});
+  for (int k = 0; k < count; ++k) {
+    const Image& one = pictures[static_cast<std::size_t>(k)];
+    for (int y = 0; y < height; ++y)
+      for (int x = 0; x < width; ++x) all.at(k % columns * width + x, k / columns * height + y) = one.at(x, y);
+  }
+  return all;
 }
 
 }  // namespace formwright

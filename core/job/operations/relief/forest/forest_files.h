@@ -3,6 +3,7 @@
 // The files of a forest of pillars.
 #include "base/data/json.h"
 #include "fabrication/sheet/cut_sheet.h"
+#include "imaging/picture/image.h"
 #include "relief/forest/forest.h"
 
 namespace formwright {
@@ -24,7 +25,13 @@ Model standing_pillars(const SolvedForest& forest);
 /// "pillar_01.stl", ...: each upright, its pin on z = 0 and its middle at 0. Throws Error: cancelled.
 Bytes pillar_files(const SolvedForest& forest, Context& context);
 
+/// The forest from each viewpoint, then from elsewhere. Throws Error: cancelled.
+std::vector<Image> forest_pictures(const ForestPlan& plan, const SolvedForest& forest, int pixels, Context& context);
+
 /// "viewpoint_1_bust.png", ... and "elsewhere.png". Throws Error: cancelled.
-Bytes forest_pictures(const ForestPlan& plan, const SolvedForest& forest, int pixels, Context& context);
+Bytes picture_files(const ForestPlan& plan, const std::vector<Image>& pictures, Context& context);
+
+/// All pictures side by side, in rows.
+Image overview(const std::vector<Image>& pictures);
 
 }  // namespace formwright

@@ -58,7 +58,7 @@ class Entry {
     return result;
   }
   [[noreturn]] void wrong(const char* key, const std::string& kind) const {
-    refuse(name_ + " of the scene has a " + key + " that is not " + kind + ".");
+    refuse(name_ + " of the scene has " + key + " that is not " + kind + ".");
   }
   const std::string& name() const { return name_; }
 
@@ -194,14 +194,13 @@ Json forest_scene_json(const ForestSceneFile& file) {
   return {{"viewpoints", viewpoints}, {"pillars", pillars}};
 }
 
-ForestSceneFile sample_forest_scene() {
+ForestSceneFile sample_forest_scene(int vertices) {
   struct Side {
     const char* sample;
     double x, y, width_mm, look_z;
   };
   // Models are 50 to 95 mm high where they seem to stand; the eyes are level with their middles.
   constexpr double away = 600;
-  constexpr int vertices = 20000;
   constexpr Side sides[] = {
       {"bust", 0, -1, 68, 60}, {"octopus", 1, 0, 92, 60}, {"cat", 0, 1, 52, 60}, {"fish", -1, 0, 92, 60}};
   ForestSceneFile file;

@@ -27,6 +27,7 @@ ForestSceneFile read_forest_scene(ByteView bytes);
 Json forest_scene_json(const ForestSceneFile& file);
 
 /// Four samples, seen from four sides; without pillars, which a layout makes. Thesis, Fig. 3.14.
-ForestSceneFile sample_forest_scene();
+/// `vertices`: of each sample.
+ForestSceneFile sample_forest_scene(int vertices);
 
 }  // namespace formwright

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "job/operations/relief/forest/relief_forest_operation.h"
 
+#include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "base/format.h"
 #include "formats/mesh_io.h"
@@ -49,8 +51,7 @@ std::vector<OutputInfo> forest_outputs() {
        true},
       {"pictures.zip", "application/zip", "Pictures", "The forest as seen from each viewpoint and from elsewhere.",
        true},
-      {"elsewhere.png", "image/png", "Picture from elsewhere", "The forest as seen from between two viewpoints.",
-       false},
+      {"overview.png", "image/png", "All pictures", "The same pictures side by side.", false},
       {"scene.json", "application/json", "Scene", "Viewpoints and pillars, to edit and to run again.", true},
       {"plan.json", "application/json", "Seen from above",
        "What each viewpoint sees, and the surfaces that are its own, as lines in the floor plan. Without files of pillars nothing is solved for it.",
@@ -113,10 +114,11 @@ std::shared_ptr<const LoadedModel> model_of(const OperationCall& call, const For
   return load_model({inputs, call.wants, call.session, call.context}, model_file);
 }
 
-ForestInput read_forest(const OperationCall& call) {
+ForestInput read_forest(const OperationCall& call, const ForestOptions& options) {
   ForestInput input;
   const auto scene = call.inputs.find(scene_file);
-  input.file = scene == call.inputs.end() ? sample_forest_scene() : read_forest_scene(*scene->second.bytes);
+  input.file = scene == call.inputs.end() ? sample_forest_scene(options.sample_vertices)
+                                          : read_forest_scene(*scene->second.bytes);
   const std::size_t count = input.file.models.size();
   for (std::size_t v = 0; v < count; ++v) {
     const double begin = static_cast<double>(v) / static_cast<double>(count);
@@ -144,10 +146,10 @@ ReliefOptions options_of_solver(const ForestOptions& options) {
   return relief;
 }
 
-Json percent(double share) { return 100 * share; }
+Json percent(double share) { return std::min(100.0, 100 * share); }
 
 bool wants_solids(const OperationCall& call) {
-  for (const char* name : {"pillars.zip", "pillars.3mf", "forest.glb", "pictures.zip", "elsewhere.png"})
+  for (const char* name : {"pillars.zip", "pillars.3mf", "forest.glb", "pictures.zip", "overview.png"})
     if (call.wants(name)) return true;
   return false;
 }
@@ -234,7 +236,7 @@ OperationResult run_relief_forest(const OperationCall& call, const ForestOptions
   if (!from_file && options.layout == PillarLayout::scene) options.layout = PillarLayout::screens;
   const ForestInput input = [&] {
     const auto span = context.span(0, 0.1, "Reading the models");
-    return read_forest(call);
+    return read_forest(call, options);
   }();
   std::vector<ViewFrame> frames;
   std::vector<const ViewFrame*> of_views;
@@ -290,12 +292,11 @@ OperationResult run_relief_forest(const OperationCall& call, const ForestOptions
   });
   add("floor_plan.svg", [&] { return write_svg(floor); });
   add("floor_plan.dxf", [&] { return write_dxf(floor); });
-  add("pictures.zip", [&] { return forest_pictures(plan, forest, options.picture_pixels, context); });
-  add("elsewhere.png", [&] {
-    return write_png(picture_of_forest(forest.standing, *forest.caster, camera_from_elsewhere(plan.scene),
-                                       options.picture_pixels, context),
-                     0, context);
-  });
+  if (call.wants("pictures.zip") || call.wants("overview.png")) {
+    const std::vector<Image> pictures = forest_pictures(plan, forest, options.picture_pixels, context);
+    add("pictures.zip", [&] { return picture_files(plan, pictures, context); });
+    add("overview.png", [&] { return write_png(overview(pictures), 0, context); });
+  }
   const auto json_bytes = [](const Json& json) {
     const std::string text = json.dump(1);
     const auto bytes = std::as_bytes(std::span(text));

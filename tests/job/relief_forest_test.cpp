@@ -170,6 +170,12 @@ TEST_CASE("ReliefForest.BadScenesAreRefusedBySentence") {
   json["viewpoints"][1]["eye_mm"] = {1, 2};
   is_refused(json, "Viewpoint 2 of the scene has eye_mm that is not a list of 3 numbers");
   json = scene();
+  json["viewpoints"][1]["eye_mm"] = {0, 0, 400};
+  is_refused(json, "Viewpoint 2 looks straight up or down, or nowhere");
+  json = scene();
+  json["viewpoints"][0]["width_mm"] = -4;
+  is_refused(json, "Viewpoint 1 has a model of -4 mm");
+  json = scene();
   json["viewpoints"][0]["sample"] = "tiger";
   is_refused(json, "Viewpoint 1 of the scene asks for a sample \"tiger\"");
   json = scene();

@@ -94,7 +94,8 @@ void make_solids(const ForestPlan& plan, const ForestOptions& options, SolvedFor
       forest.pillars.push_back(
           pillar_solid(pillars[p], number, {options.pin_diameter_mm, options.pin_depth_mm}, solids, context));
     } catch (const Error& error) {
-      if (error.code() == ErrorCode::cancelled || error.where() == "pin_diameter_mm") throw;
+      if (error.code() != ErrorCode::could_not_solve && error.code() != ErrorCode::invalid_input) throw;
+      if (error.where() == "pin_diameter_mm") throw;
       throw Error(ErrorCode::could_not_solve, "scene",
                   "The pieces of pillar " + std::to_string(number) +
                       " could not be joined to it: move it a little or choose another detail spacing (pixel_mm).");
@@ -111,7 +112,7 @@ ForestPlan plan_forest(ForestScene scene, std::span<const ViewFrame* const> fram
   for (std::size_t v = 0; v < frames.size(); ++v) {
     plan.views.emplace_back(plan.scene.viewpoints[v]);
     PlanView in_plan = plan.views.back().plan();
-    const Vec2 range = range_of_tangents(plan.views.back(), *frames[v]);
+    const Vec2 range = range_of_tangents(plan.views.back(), *frames[v], static_cast<int>(v) + 1);
     const double room = room_beside_model * (range[1] - range[0]);
     in_plan.from = range[0] - room;
     in_plan.to = range[1] + room;

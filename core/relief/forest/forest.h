@@ -22,7 +22,8 @@ struct ForestPlan {
   std::vector<Vec2> pins_mm;  // place of each pillar's pin
 };
 
-/// `frames`: of each viewpoint's model, by make_view_frame and ForestView::relief_options. Pillars are made where
+/// `scene`: has passed check_viewpoints. `frames`: of each viewpoint's model, by make_view_frame and
+/// ForestView::relief_options. Pillars are made where
 /// `options.layout` asks for them, and replace those of the scene.
 /// Throws Error{invalid_input}: see check_forest, checked_pin_place, assign_walls and the layouts.
 ForestPlan plan_forest(ForestScene scene, std::span<const ViewFrame* const> frames, const ForestOptions& options,

@@ -45,6 +45,11 @@ TEST_CASE("ForestLayout.AGridIsEven") {
   CHECK_THROWS_AS(grid_of_pillars({{0, 0}, 100, 60}, 13, 3, 0, {PillarShape::square, 8, 50, 2}), Error);
 }
 
+TEST_CASE("ForestLayout.TooManyPillarsAreRefusedAtOnce") {
+  CHECK_THROWS_AS(grid_of_pillars({{0, 0}, 1e5, 1e5}, 100, 100, 0, {PillarShape::square, 8, 50, 2}), Error);
+  CHECK_THROWS_AS(screens_of_pillars(four_views(), 160, 60, {PillarShape::round, 0.1, 100, 4}, 1), Error);
+}
+
 TEST_CASE("ForestLayout.RandomPillarsKeepTheirDistanceAndFollowTheSeed") {
   const PillarKind kind{PillarShape::mixed, 12, 100, 4};
   const FloorArea area{{0, 0}, 240, 240};

@@ -38,7 +38,7 @@ OnWalls on_walls(const Vec3& eye, double carve_mm) {
   options = result.view.relief_options(options);
   result.solver = std::make_shared<ReliefSolver>(mesh, options, context);
   PlanView plan = result.view.plan();
-  const Vec2 range = range_of_tangents(result.view, result.solver->frame());
+  const Vec2 range = range_of_tangents(result.view, result.solver->frame(), 1);
   plan.from = range[0];
   plan.to = range[1];
   result.plan_views = {plan};

@@ -20,6 +20,7 @@ ForestScene good() {
 
 void is_refused(const ForestScene& scene, const std::string& words) {
   try {
+    check_viewpoints(scene);
     check_forest(scene, 3);
     FAIL("not refused: " << words);
   } catch (const Error& error) {

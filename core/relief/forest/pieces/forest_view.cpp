@@ -3,6 +3,9 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <string>
+
+#include "base/error.h"
 
 namespace formwright {
 
@@ -61,11 +64,17 @@ Vec3 ForestView::picture_ray(double x, double y) const {
   return (look_ + width_mm_ / distance_mm_ * (x * right_ + y * up_)).normalized();
 }
 
-Vec2 range_of_tangents(const ForestView& view, const ViewFrame& frame) {
+Vec2 range_of_tangents(const ForestView& view, const ViewFrame& frame, int number) {
+  constexpr double nearest_share = 0.02;  // of the distance of what is looked at
   Vec2 range(INFINITY, -INFINITY);
   for (Eigen::Index i = 0; i < frame.P.rows(); ++i) {
-    const double t = view.ray_point(view.to_world(Vec3(frame.P.row(i).transpose()), frame.kappa)).aside;
-    range = {std::min(range[0], t), std::max(range[1], t)};
+    const RayPoint p = view.ray_point(view.to_world(Vec3(frame.P.row(i).transpose()), frame.kappa));
+    if (!(p.ahead > nearest_share * view.plan().distance_mm))
+      throw Error(ErrorCode::invalid_input, "scene",
+                  "Viewpoint " + std::to_string(number) +
+                      " looks too steeply at its model: bring its eye nearer to the height of what it looks at, or "
+                      "move it away.");
+    range = {std::min(range[0], p.aside), std::max(range[1], p.aside)};
   }
   return range;
 }

@@ -46,7 +46,8 @@ class ForestView {
   PlanView plan_;
 };
 
-/// Smallest and largest tangent of the model's vertices.
-Vec2 range_of_tangents(const ForestView& view, const ViewFrame& frame);
+/// Smallest and largest tangent of the model's vertices. Throws Error{invalid_input, "scene"} if not all of them lie
+/// ahead of viewpoint `number` in the floor plan: it looks too steeply.
+Vec2 range_of_tangents(const ForestView& view, const ViewFrame& frame, int number);
 
 }  // namespace formwright

@@ -37,7 +37,7 @@ PillarShape shape_of(PillarShape shape, std::size_t index) {
 
 bool has_room(const Outline& outline, const std::vector<Pillar>& pillars, double gap_mm) {
   return std::ranges::all_of(
-      pillars, [&](const Pillar& other) { return distance_between(outline, other.outline_mm) >= gap_mm; });
+      pillars, [&](const Pillar& other) { return distance_between(outline, other.outline_mm, gap_mm) >= gap_mm; });
 }
 
 /// Whether any part of it lies within the rays of a viewpoint as far as its own screen, widened by `margin_mm`.
@@ -52,13 +52,23 @@ bool is_in_rays(const Outline& outline, const PlanView& view, double inner_mm, d
   return from < view.to && to > view.from;
 }
 
+/// Columns of rays, each as wide as a pillar in the middle of the screen.
+int columns_of(const PlanView& view, double outer_mm, double inner_mm, const PillarKind& kind) {
+  const double middle = view.distance_mm - 0.5 * (outer_mm + inner_mm),
+               columns = std::round((view.to - view.from) * middle / kind.width_mm);
+  if (columns > max_pillars)
+    throw Error(ErrorCode::invalid_input, "pillar_width_mm",
+                "A screen would need more than " + std::to_string(max_pillars) + " pillars: make them wider.");
+  return std::max(1, static_cast<int>(columns));
+}
+
 /// One pillar a column of rays, as wide as the column where it stands.
 bool add_screen(std::size_t own, std::span<const PlanView> views, double outer_mm, double inner_mm,
                 const PillarKind& kind, Random& random, std::vector<Pillar>& pillars) {
   const PlanView& view = views[own];
   const double near_mm = view.distance_mm - outer_mm, far_mm = view.distance_mm - inner_mm;
-  const double range = view.to - view.from, middle = 0.5 * (near_mm + far_mm);
-  const int columns = std::max(1, static_cast<int>(std::lround(range * middle / kind.width_mm)));
+  const double range = view.to - view.from;
+  const int columns = columns_of(view, outer_mm, inner_mm, kind);
   const double turn_deg = std::atan2(view.forward.y(), view.forward.x()) * 180 / std::numbers::pi - 90;
   for (int k = 0; k < columns; ++k) {
     bool placed = false;
@@ -85,6 +95,10 @@ std::vector<Pillar> grid_of_pillars(const FloorArea& area, int columns, int rows
   const auto place = [](double size, int k, int count) {
     return count == 1 ? 0.0 : size * (static_cast<double>(k) / (count - 1) - 0.5);
   };
+  if (columns > max_pillars / rows)
+    throw Error(ErrorCode::invalid_input, "grid_columns",
+                "The grid would have " + std::to_string(columns * rows) + " pillars: at most " +
+                    std::to_string(max_pillars) + " can be computed.");
   std::vector<Pillar> pillars;
   for (int row = 0; row < rows; ++row)
     for (int column = 0; column < columns; ++column) {

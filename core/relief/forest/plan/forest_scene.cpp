@@ -35,8 +35,7 @@ void check_pillar(const Pillar& pillar, std::size_t index) {
     refuse(name + " covers less than 1 mm² of the floor: make it wider.");
 }
 
-void check_viewpoint(const ForestScene& scene, std::size_t index) {
-  const ForestViewpoint& view = scene.viewpoints[index];
+void check_viewpoint(const ForestViewpoint& view, std::size_t index) {
   const std::string name = name_of("Viewpoint", index);
   for (int k = 0; k < 3; ++k)
     if (!is_place(view.eye_mm[k]) || !is_place(view.look_at_mm[k]))
@@ -46,12 +45,16 @@ void check_viewpoint(const ForestScene& scene, std::size_t index) {
   const Vec3 look = view.look_at_mm - view.eye_mm;
   if (look.head<2>().norm() < 1e-3 * look.norm() || look.norm() < 1e-3)
     refuse(name + " looks straight up or down, or nowhere: move it aside of what it looks at.");
-  const Vec2 eye = view.eye_mm.head<2>(), forward = look.head<2>().normalized();
+}
+
+void check_among_pillars(const ForestScene& scene, std::size_t index) {
+  const ForestViewpoint& view = scene.viewpoints[index];
+  const Vec2 eye = view.eye_mm.head<2>(), forward = (view.look_at_mm - view.eye_mm).head<2>().normalized();
   bool any_ahead = false;
   for (std::size_t p = 0; p < scene.pillars.size(); ++p) {
     const Outline& outline = scene.pillars[p].outline_mm;
     if (is_inside(outline, eye))
-      refuse(name + " stands inside pillar " + std::to_string(p + 1) + ": move one of the two.");
+      refuse(name_of("Viewpoint", index) + " stands inside pillar " + std::to_string(p + 1) + ": move one of the two.");
     for (const Vec2& c : outline) any_ahead = any_ahead || forward.dot(c - eye) > 0;
   }
   if (!any_ahead)
@@ -60,25 +63,31 @@ void check_viewpoint(const ForestScene& scene, std::size_t index) {
 
 }  // namespace
 
-void check_forest(const ForestScene& scene, double gap_mm) {
+void check_viewpoints(const ForestScene& scene) {
   if (scene.viewpoints.empty()) refuse("The scene has no viewpoint: add one with a model.");
+  if (scene.viewpoints.size() > static_cast<std::size_t>(max_viewpoints))
+    refuse("The scene has " + std::to_string(scene.viewpoints.size()) + " viewpoints: at most " +
+           std::to_string(max_viewpoints) + " can be computed.");
+  for (std::size_t v = 0; v < scene.viewpoints.size(); ++v) check_viewpoint(scene.viewpoints[v], v);
+}
+
+void check_forest(const ForestScene& scene, double gap_mm) {
+  check_viewpoints(scene);
   if (scene.pillars.empty()) refuse("The scene has no pillars: add some, or choose a layout that makes them.");
-  if (scene.viewpoints.size() > static_cast<std::size_t>(max_viewpoints) ||
-      scene.pillars.size() > static_cast<std::size_t>(max_pillars))
-    refuse("The scene has " + std::to_string(scene.viewpoints.size()) + " viewpoints and " +
-           std::to_string(scene.pillars.size()) + " pillars: at most " + std::to_string(max_viewpoints) + " and " +
+  if (scene.pillars.size() > static_cast<std::size_t>(max_pillars))
+    refuse("The scene has " + std::to_string(scene.pillars.size()) + " pillars: at most " +
            std::to_string(max_pillars) + " can be computed.");
   for (std::size_t p = 0; p < scene.pillars.size(); ++p) check_pillar(scene.pillars[p], p);
   for (std::size_t p = 0; p < scene.pillars.size(); ++p)
     for (std::size_t q = p + 1; q < scene.pillars.size(); ++q) {
-      const double distance = distance_between(scene.pillars[p].outline_mm, scene.pillars[q].outline_mm);
+      const double distance = distance_between(scene.pillars[p].outline_mm, scene.pillars[q].outline_mm, gap_mm);
       const std::string both = "Pillars " + std::to_string(p + 1) + " and " + std::to_string(q + 1);
       if (distance == 0) refuse(both + " overlap: move them apart.");
       if (distance < gap_mm)
         refuse(both + " stand " + with_digits(distance, 3) + " mm apart, and their reliefs need " +
                with_digits(gap_mm, 3) + " mm: move them apart, or make the reliefs thinner.");
     }
-  for (std::size_t v = 0; v < scene.viewpoints.size(); ++v) check_viewpoint(scene, v);
+  for (std::size_t v = 0; v < scene.viewpoints.size(); ++v) check_among_pillars(scene, v);
 }
 
 void orient_outlines(ForestScene& scene) {

@@ -27,10 +27,14 @@ struct ForestScene {
 
 inline constexpr int max_viewpoints = 12, max_pillars = 400, max_outline_corners = 256;
 
-/// What must hold before anything is solved; `gap_mm` is how far apart pillars must stand at least.
-/// Throws Error{invalid_input, "scene"} with the numbers of what is wrong, which count from 1: numbers out of range; an
-/// outline without area or that crosses itself; pillars that overlap or stand too close; a viewpoint in a pillar, at
-/// what it looks at, straight above it, or with all pillars behind it.
+/// What must hold of viewpoints before ForestView and make_view_frame take them: there are some, not too many, with
+/// numbers in range, and none looks at its own place or straight up or down. Throws Error{invalid_input, "scene"}.
+void check_viewpoints(const ForestScene& scene);
+
+/// What must hold before anything is solved, check_viewpoints included; `gap_mm` is how far apart pillars must stand at
+/// least. Throws Error{invalid_input, "scene"} with the numbers of what is wrong, which count from 1: numbers out of
+/// range; an outline without area or that crosses itself; pillars that overlap or stand too close; a viewpoint in a
+/// pillar, or with all pillars behind it.
 void check_forest(const ForestScene& scene, double gap_mm);
 
 /// Corners counter-clockwise.

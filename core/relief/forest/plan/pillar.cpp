@@ -97,7 +97,18 @@ double distance_to_outline(const Outline& outline, const Vec2& p) {
   return nearest;
 }
 
-double distance_between(const Outline& a, const Outline& b) {
+double distance_between(const Outline& a, const Outline& b, double enough) {
+  Vec2 low_a = a[0], high_a = a[0], low_b = b[0], high_b = b[0];
+  for (const Vec2& p : a) {
+    low_a = low_a.cwiseMin(p);
+    high_a = high_a.cwiseMax(p);
+  }
+  for (const Vec2& p : b) {
+    low_b = low_b.cwiseMin(p);
+    high_b = high_b.cwiseMax(p);
+  }
+  const double between_boxes = (low_b - high_a).cwiseMax(low_a - high_b).cwiseMax(Vec2(0, 0)).norm();
+  if (between_boxes >= enough) return between_boxes;
   if (is_inside(a, b.front()) || is_inside(b, a.front())) return 0;
   double nearest = INFINITY;
   for (std::size_t i = 0; i < a.size(); ++i)

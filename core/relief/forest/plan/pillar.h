@@ -27,8 +27,9 @@ Vec2 outline_centroid(const Outline& outline);
 bool is_inside(const Outline& outline, const Vec2& p);
 double distance_to_segment(const Vec2& p, const Vec2& a, const Vec2& b);
 double distance_to_outline(const Outline& outline, const Vec2& p);  // of the line, also from inside
-/// 0 where they cross or one holds the other.
-double distance_between(const Outline& a, const Outline& b);
+/// 0 where they cross or one holds the other. Of outlines whose boxes are `enough` apart or more, the distance of
+/// these.
+double distance_between(const Outline& a, const Outline& b, double enough = 1e300);
 /// Whether two of its edges cross or touch, neighbours apart at their common corner.
 bool crosses_itself(const Outline& outline);
 /// A place far from the outline within it: the centroid, or of a grid of points the one that is farthest where that is

@@ -54,8 +54,10 @@ double last_in_sight(const SeenPlan& plan, std::size_t view, const Vec2& e, cons
   };
   add_tangent(from.from);
   add_tangent(from.to);
-  for (const WallStrip& s : plan.strips[view]) {
-    if (s.to < least || s.from > largest) continue;
+  const std::vector<WallStrip>& strips = plan.strips[view];
+  for (auto it = std::ranges::lower_bound(strips, least, {}, &WallStrip::to); it != strips.end() && it->from <= largest;
+       ++it) {
+    const WallStrip& s = *it;
     const Outline& outline = plan.pillars[static_cast<std::size_t>(s.pillar)].outline_mm;
     const Vec2 &a = corner(outline, s.edge), &b = corner(outline, s.edge + 1);
     add_tangent(s.from);

@@ -23,7 +23,7 @@ double squareness(const PlanView& view, const Pillar& pillar, int edge, double p
 }
 
 /// Whether another viewpoint's claim takes the place away.
-bool gives_way(const Claim& own, const Claim& other, SharedWalls shared) {
+bool yields_to(const Claim& own, const Claim& other, SharedWalls shared) {
   if (shared != SharedWalls::squarest) return true;
   return own.squareness != other.squareness ? own.squareness < other.squareness : own.view > other.view;
 }
@@ -33,7 +33,7 @@ std::vector<std::pair<double, double>> remaining(const Claim& own, const std::ve
                                                  SharedWalls shared) {
   std::vector<std::pair<double, double>> parts{{own.from, own.to}};
   for (const Claim& other : claims) {
-    if (other.view == own.view || !gives_way(own, other, shared)) continue;
+    if (other.view == own.view || !yields_to(own, other, shared)) continue;
     std::vector<std::pair<double, double>> kept;
     for (const auto& [from, to] : parts) {
       if (std::min(to, other.from) > from) kept.emplace_back(from, std::min(to, other.from));

@@ -10,7 +10,7 @@ namespace formwright {
 namespace {
 
 using Interval = std::pair<double, double>;  // empty: first > second
-constexpr double max_share_of_way = 0.4;
+constexpr double max_share_of_chord = 0.4;
 constexpr Interval nothing{INFINITY, -INFINITY};
 
 Interval hull(const Interval& a, const Interval& b) {
@@ -86,7 +86,7 @@ WallReach wall_reach(const PlanView& view, const Pillar& pillar, int edge, doubl
   reach.far = reach.surface;
   if (below_mm > 0)
     reach.far = std::min(near_outline(view.eye, d, outline, reach.surface, below_mm).second,
-                         reach.surface + max_share_of_way * (reach.exit - reach.surface));
+                         reach.surface + max_share_of_chord * (reach.exit - reach.surface));
   reach.far = std::max(reach.far, reach.surface);
   return reach;
 }

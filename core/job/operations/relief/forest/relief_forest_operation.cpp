@@ -238,6 +238,7 @@ OperationResult run_relief_forest(const OperationCall& call, const ForestOptions
     const auto span = context.span(0, 0.1, "Reading the models");
     return read_forest(call, options);
   }();
+  check_viewpoints(input.file.scene);
   std::vector<ViewFrame> frames;
   std::vector<const ViewFrame*> of_views;
   for (std::size_t v = 0; v < input.models.size(); ++v)

@@ -194,13 +194,25 @@ int ReliefSolver::balance(const ReliefOptions& options, const DepthBounds& bound
 
 Relief ReliefSolver::solve(const ReliefOptions& options, const BaseSurface& base, Context& context) {
   const DepthBounds bounds = depth_bounds(frame_, visibility_, base, options, context);
+  if (bounds.groups == 1) return solve_within(options, bounds, nullptr, base.is_flat(), context);
+  const BandBorders borders(frame_, *base.bands(), bounds);
+  return solve_within(options, bounds, &borders, false, context);
+}
+
+Relief ReliefSolver::solve(const ReliefOptions& options, const DepthBounds& bounds, const GroupBorders& borders,
+                           Context& context) {
+  return solve_within(options, bounds, &borders, false, context);
+}
+
+Relief ReliefSolver::solve_within(const ReliefOptions& options, const DepthBounds& bounds, const GroupBorders* borders,
+                                  bool flat, Context& context) {
   BoundedQpConstraints constraints = constraints_of(frame_, bounds);
-  if (options.appearance == Appearance::balanced && bounds.groups > 1)
+  if (options.appearance == Appearance::balanced && borders != nullptr)
     throw Error(
         ErrorCode::invalid_input, "appearance",
         "On a base in steps the relief is made with the appearance \"detail\" only: choose it, or another base.");
   // On a plate lent, not copied: at 300k vertices the rows are tens of megabytes.
-  const bool lent = base.is_flat();
+  const bool lent = flat;
   struct Lent {
     std::vector<InequalityRow>&from, &to;
     bool lent;
@@ -231,17 +243,17 @@ Relief ReliefSolver::solve(const ReliefOptions& options, const BaseSurface& base
   relief.u = settled(frame_, constraints, relief.qp.u, m);
   if (options.appearance == Appearance::balanced) {
     const auto span = context.span(0.4, 0.9, "Restoring broad forms");
-    relief.balanced_steps = balance(options, bounds, constraints, base.is_flat(), relief.u, context);
+    relief.balanced_steps = balance(options, bounds, constraints, flat, relief.u, context);
   }
   context.progress(0.9, "Comparing normals");
   relief.moved = frame_.moved(relief.u);
   // In steps, the parts look from the viewpoint as the surface does in one piece.
-  const bool in_steps = bounds.groups > 1;
+  const bool in_steps = borders != nullptr;
   const Eigen::VectorXd& looked_at = in_steps ? relief.qp.u : relief.u;
   relief.energy = (*energy_)(looked_at);
   relief.seen = in_steps ? frame_.moved(looked_at) : relief.moved;
   relief.normal_error = normal_error(frame_, F_, visibility_, relief.seen);
-  if (in_steps) relief.pieces = cut_into_bands(frame_, F_, relief.qp.u, m, bounds, *base.bands(), context);
+  if (in_steps) relief.pieces = cut_into_bands(frame_, F_, relief.qp.u, m, bounds, *borders, context);
   const Eigen::VectorXd linear = linear_compression(
       frame_, in_steps ? depth_bounds(frame_, visibility_, BaseSurface(), options, context) : bounds);
   relief.energy_linear = (*energy_)(linear);

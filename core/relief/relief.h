@@ -53,6 +53,9 @@ class ReliefSolver {
   /// Throws Error: invalid_input (see depth_bounds; the balanced appearance on a base in steps), could_not_solve,
   /// cancelled.
   Relief solve(const ReliefOptions& options, const BaseSurface& base, Context& context);
+  /// On a base in parts that move in groups: `bounds` as depth_bounds would give them for it. The appearance must be
+  /// `detail`. `Relief::pieces` has the parts, `Relief::seen` the surface before it is cut.
+  Relief solve(const ReliefOptions& options, const DepthBounds& bounds, const GroupBorders& borders, Context& context);
   /// On a flat base.
   Relief solve(const ReliefOptions& options, Context& context) { return solve(options, BaseSurface(), context); }
 
@@ -64,10 +67,12 @@ class ReliefSolver {
   double memory_mb() const;
 
  private:
+  Relief solve_within(const ReliefOptions& options, const DepthBounds& bounds, const GroupBorders* borders, bool flat,
+                      Context& context);
   BoundedQpSolution solve_on_base(BoundedQpConstraints& constraints, const BoundedQpOptions& options, bool flat,
                                   Context& context);
   /// Moves `u` from the optimum of eq. (3.13) to the balanced relief; the number of steps.
-  int balance(const ReliefOptions& options, const struct DepthBounds& bounds, const BoundedQpConstraints& constraints,
+  int balance(const ReliefOptions& options, const DepthBounds& bounds, const BoundedQpConstraints& constraints,
               bool flat, Eigen::VectorXd& u, Context& context);
 
   ViewFrame frame_;

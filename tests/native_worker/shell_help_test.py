@@ -93,7 +93,7 @@ class ShellHelp(unittest.TestCase):
         self.assertIn("--xml", wrong.stderr)
 
     def test_commands_and_flags_are_completed_in_bash(self):
-        self.assertEqual(sorted(self.bash("reli")), ["relief", "relief-light"])
+        self.assertEqual(sorted(self.bash("reli")), ["relief", "relief-forest", "relief-light"])
         self.assertLessEqual({*OPERATIONS, "serve", "machine", "list", "describe", "completions", "manual"}, set(self.bash("")))
         self.assertEqual(self.bash("relief", "--thick"), ["--thickness-mm"])
         self.assertEqual(self.bash("relief", "--projection", ""), ["perspective", "orthographic"])
@@ -110,7 +110,7 @@ class ShellHelp(unittest.TestCase):
                 self.assertEqual(set(FLAG.findall(" ".join(self.bash(*words, "--")))) - {"--help"}, help_flags(*words) - {"--help"})
 
     def test_commands_and_flags_are_completed_in_fish(self):
-        self.assertEqual(sorted(self.fish("formwright reli")), ["relief", "relief-light"])
+        self.assertEqual(sorted(self.fish("formwright reli")), ["relief", "relief-forest", "relief-light"])
         self.assertEqual(self.fish("formwright relief --thick"), ["--thickness-mm"])
         self.assertEqual(sorted(self.fish("formwright relief --projection ")), ["orthographic", "perspective"])
         self.assertEqual(set(self.fish("formwright relief --")) - {"--help"}, help_flags("relief") - {"--help"})

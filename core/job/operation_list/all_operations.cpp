@@ -8,6 +8,7 @@
 #include "job/operations/evidence/evidence_registration_operations.h"
 #include "job/operations/fabrication/fabrication_operations.h"
 #include "job/operations/mesh/mesh_operations.h"
+#include "job/operations/relief/forest/relief_forest_operation.h"
 #include "job/operations/relief/relief_light_operation.h"
 #include "job/operations/relief/relief_operation.h"
 #include "job/operations/thermoform/thermoform_operations.h"
@@ -18,6 +19,7 @@ namespace formwright {
 std::vector<Operation> all_operations(Operation evidence_register) {
   std::vector<Operation> all = {relief_operation(),
                                 relief_light_operation(),
+                                relief_forest_operation(),
                                 thermoform_simulate_operation(),
                                 thermoform_texture_operation(),
                                 thermoform_mould_operation(),

@@ -23,18 +23,19 @@ struct Corner {
 class Cutter {
  public:
   Cutter(const ViewFrame& frame, const Positions& joint, const Eigen::VectorXd& m, const DepthBounds& bounds,
-         const BaseBands& bands)
-      : frame_(frame), joint_(joint), m_(m), bounds_(bounds), bands_(bands) {
-    for (int k = 0; k + 1 < bands.count(); ++k) border_t_.push_back(bands.border_on_plate(frame, k));
+         const GroupBorders& borders)
+      : frame_(frame), joint_(joint), m_(m), bounds_(bounds), borders_(borders) {
+    for (int k = 0; k + 1 < borders.bands(); ++k) border_t_.push_back(borders.border(k));
   }
 
   void cut(int a, int b, int c) {
     std::vector<Corner> rest{corner(a), corner(b), corner(c)};
-    for (int band = 0; band < bands_.count() && rest.size() >= 3; ++band) {
+    for (int band = 0; band < borders_.bands() && rest.size() >= 3; ++band) {
       std::vector<Corner> here, beyond;
-      if (band + 1 == bands_.count()) here.swap(rest);
+      if (band + 1 == borders_.bands()) here.swap(rest);
       else split(rest, band, here, beyond);
-      for (std::size_t k = 2; k < here.size(); ++k) add(here[0], here[k - 1], here[k], band);
+      if (borders_.group(band) >= 0)
+        for (std::size_t k = 2; k < here.size(); ++k) add(here[0], here[k - 1], here[k], band);
       rest.swap(beyond);
     }
   }
@@ -57,7 +58,7 @@ class Cutter {
     c.a = c.origin = vertex;
     c.place = joint_.row(vertex).transpose();
     // Of the model, where the ray is the same: which side it is on does not hang on the solution's last digit.
-    c.t = bands_.on_plate(frame_, frame_.P.row(vertex).transpose());
+    c.t = borders_.place(frame_.P.row(vertex).transpose());
     c.limits = {bounds_.nearest[vertex], bounds_.farthest[vertex]};
     c.bounded = bounds_.bounded[static_cast<std::size_t>(vertex)] != 0;
     return c;
@@ -76,9 +77,7 @@ class Cutter {
       on.a = first.b < 0 ? first.a : id_of(first);
       on.b = second.b < 0 ? second.a : id_of(second);
       on.border = border;
-      // The plane through the viewpoint and the border: across - at (1 + kappa z) = 0, linear in the place.
-      const auto off = [&](const Vec3& x) { return bands_.across(x.x(), x.y()) - at * (1 + frame_.kappa * x.z()); };
-      const double d = off(first.place), e = off(second.place),
+      const double d = borders_.off(border, first.place), e = borders_.off(border, second.place),
                    share = d == e ? 0.5 : std::clamp(d / (d - e), 0.0, 1.0);
       on.place = first.place + share * (second.place - first.place);
       on.t = at;
@@ -116,19 +115,18 @@ class Cutter {
 
   /// Scaled about the viewpoint by 1 / mu; straight on, shifted in depth.
   Vec3 brought_back(const Corner& c, int band) const {
-    const double m = m_[band], kappa = frame_.kappa;
+    const double m = m_[borders_.group(band)], kappa = frame_.kappa;
     Vec3 p = c.place;
     if (kappa == 0) p.z() -= m;
     else {
       const Vec3 viewpoint(0, 0, -1 / kappa);
       p = viewpoint + (p - viewpoint) / (1 + kappa * m);
     }
-    if (!c.bounded) return p;
-    const bool is_new = c.border >= 0;
-    const double base = bands_.depth(band);
-    const double nearest = is_new ? base - bounds_.above : c.limits[0],
-                 farthest = is_new ? base + bounds_.below : c.limits[1];
-    const double z = std::clamp(p.z(), nearest, farthest);
+    std::optional<Vec2> limits;
+    if (c.border >= 0) limits = borders_.limits(band, c.border, p, c.bounded);
+    else if (c.bounded) limits = c.limits;
+    if (!limits) return p;
+    const double z = std::clamp(p.z(), (*limits)[0], (*limits)[1]);
     const double stretch = (1 + kappa * z) / (1 + kappa * p.z());
     return {p.x() * stretch, p.y() * stretch, z};
   }
@@ -137,7 +135,7 @@ class Cutter {
   const Positions& joint_;
   const Eigen::VectorXd& m_;
   const DepthBounds& bounds_;
-  const BaseBands& bands_;
+  const GroupBorders& borders_;
   std::vector<double> border_t_;
   std::map<std::array<int, 3>, int> ids_;
   std::map<std::array<int, 4>, int> vertices_;
@@ -149,10 +147,10 @@ class Cutter {
 }  // namespace
 
 ReliefPieces cut_into_bands(const ViewFrame& frame, const Triangles& F, const Eigen::VectorXd& joint,
-                            const Eigen::VectorXd& m, const DepthBounds& bounds, const BaseBands& bands,
+                            const Eigen::VectorXd& m, const DepthBounds& bounds, const GroupBorders& borders,
                             Context& context) {
   const Positions places = frame.moved(joint);
-  Cutter cutter(frame, places, m, bounds, bands);
+  Cutter cutter(frame, places, m, bounds, borders);
   for (Eigen::Index f = 0; f < F.rows(); ++f) {
     if (f % 65536 == 0) context.check_cancelled();
     cutter.cut(F(f, 0), F(f, 1), F(f, 2));

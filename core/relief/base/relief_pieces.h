@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// A relief on a base in steps, cut where its rays pass from one band to the next: thesis Fig. 3.7, right.
+// A relief on a base in parts, cut where its rays pass from one part to the next: thesis Fig. 3.7, right.
 #include <vector>
 
 #include "base/context.h"
-#include "relief/base/base_bands.h"
 #include "relief/base/depth_bounds.h"
+#include "relief/base/group_borders.h"
 
 namespace formwright {
 
@@ -16,12 +16,12 @@ struct ReliefPieces {
   std::vector<int> origin;  // of each vertex, that of the relief which it is or lies nearest to
 };
 
-/// Cuts the joint surface exactly along the planes through the viewpoint and the borders, and brings each part back to
-/// its band by its own scale. New vertices on a border keep to the bounds of their band.
+/// Cuts the joint surface exactly along the borders' planes, and brings each part back to its band by its own scale.
+/// New vertices on a border keep to the bounds of their band. Parts in bands without a group are left out.
 /// @param joint  n, u of the surface in one piece, as eq. (3.14) has it
-/// @param m      of each band, mu = 1 + kappa m, or the shift in depth straight on
+/// @param m      of each group, mu = 1 + kappa m, or the shift in depth straight on
 ReliefPieces cut_into_bands(const ViewFrame& frame, const Triangles& F, const Eigen::VectorXd& joint,
-                            const Eigen::VectorXd& m, const DepthBounds& bounds, const BaseBands& bands,
+                            const Eigen::VectorXd& m, const DepthBounds& bounds, const GroupBorders& borders,
                             Context& context);
 
 }  // namespace formwright

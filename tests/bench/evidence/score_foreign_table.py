@@ -5,25 +5,9 @@
 Of every case the last answer counts. Nothing is left out: failures count as not named, and on clean sheets as an alarm."""
 import argparse
 import json
-import math
 import statistics
 
-
-def wilson(hits, count):
-    """95 % interval of a share [Wil27], which holds for few cases, too."""
-    if count == 0:
-        return 0.0, 1.0
-    z = 1.959964
-    middle = (hits + z * z / 2) / (count + z * z)
-    half = z * math.sqrt(hits * (count - hits) / count + z * z / 4) / (count + z * z)
-    return max(0.0, middle - half), min(1.0, middle + half)
-
-
-def share(hits, count):
-    if count == 0:
-        return "none tried"
-    low, high = wilson(hits, count)
-    return f"{hits} of {count} ({100 * hits / count:.0f} %, {100 * low:.0f} to {100 * high:.0f} %)"
+from counted_shares import share_of
 
 
 def named(case):
@@ -71,8 +55,8 @@ def table(title, groups):
         alarms = [c for c in clean if c.get("reading") != "none"]
         sure = lambda group: sum(not c.get("doubtful", False) for c in group)
         hits = [c for c in listed if right(c)]
-        print(f"| {name} | {share(len(hits), len(listed))} | {share(sure(hits), len(listed))} | {share(len(wrong), len(listed))} | {share(sure(wrong), len(listed))} "
-              f"| {share(len(alarms), len(clean))} | {share(sure(alarms), len(clean))} |")
+        print(f"| {name} | {share_of(len(hits), len(listed))} | {share_of(sure(hits), len(listed))} | {share_of(len(wrong), len(listed))} | {share_of(sure(wrong), len(listed))} "
+              f"| {share_of(len(alarms), len(clean))} | {share_of(sure(alarms), len(clean))} |")
 
 
 def main():
@@ -106,7 +90,7 @@ Sheets that `tests/foreign_laboratory` formed, with a simulation of another kind
     foreign = [c for c in strong if not c.get("in_the_list", True)]
     if foreign:
         careful = sum(1 for c in foreign if "error" not in c and (not named(c) or c["doubtful"]))
-        print(f"\nA cause that is in no list (`print_stretch`): unknown, none or in doubt in {share(careful, len(foreign))}.")
+        print(f"\nA cause that is in no list (`print_stretch`): unknown, none or in doubt in {share_of(careful, len(foreign))}.")
     good = [c for c in cases if "error" not in c]
     if good:
         clean = [c["error_before_mm"] for c in good if c["cause"] == "none"]

@@ -20,12 +20,7 @@ constexpr double overlap_share = 0.08;  // of a column: by so much its pillar is
 Outline outline_of(PillarShape shape, const Vec2& centre, double width_mm, double turn_deg) {
   switch (shape) {
     case PillarShape::square: return square_outline(centre, width_mm, turn_deg);
-    case PillarShape::hexagon: {
-      Outline outline = round_outline(Vec2(0, 0), width_mm, 6);
-      const double angle = turn_deg * std::numbers::pi / 180, c = std::cos(angle), s = std::sin(angle);
-      for (Vec2& p : outline) p = centre + Vec2(c * p.x() - s * p.y(), s * p.x() + c * p.y());
-      return outline;
-    }
+    case PillarShape::hexagon: return round_outline(centre, width_mm, 6, turn_deg);
     default: return round_outline(centre, width_mm, round_corners);
   }
 }

@@ -42,8 +42,8 @@ bool segments_meet(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
 
 }  // namespace
 
-Outline round_outline(const Vec2& centre, double diameter_mm, int corners) {
-  return regular_outline(centre, 0.5 * diameter_mm, corners, 0);
+Outline round_outline(const Vec2& centre, double diameter_mm, int corners, double turn_deg) {
+  return regular_outline(centre, 0.5 * diameter_mm, corners, turn_deg);
 }
 
 Outline square_outline(const Vec2& centre, double side_mm, double turn_deg) {

@@ -15,8 +15,8 @@ struct Pillar {
   double height_mm = 0;  // from the floor, z = 0
 };
 
-/// A polygon with `corners` corners on a circle.
-Outline round_outline(const Vec2& centre, double diameter_mm, int corners);
+/// A polygon with `corners` corners on a circle, the first `turn_deg` from x towards y.
+Outline round_outline(const Vec2& centre, double diameter_mm, int corners, double turn_deg = 0);
 /// `turn_deg`: counter-clockwise; at 0 the sides lie along x and y.
 Outline square_outline(const Vec2& centre, double side_mm, double turn_deg);
 

@@ -25,7 +25,7 @@ Bytes bytes_of(const std::string& text) {
 }
 
 JobResult run(const Files& files, Json parameters, const std::vector<std::string>& outputs) {
-  parameters.update(Json{{"pixel_mm", 1}, {"check_rays", 80}, {"picture_pixels", 100}, {"sample_vertices", 1500}});
+  parameters.update(Json{{"pixel_mm", 1}, {"check_rays", 80}, {"picture_pixels", 100}, {"scene_vertices", 1500}});
   Json inputs = Json::object();
   std::map<std::string, std::shared_ptr<const Bytes>> blobs;
   for (const auto& [name, bytes] : files) {

@@ -53,7 +53,7 @@ struct ForestOptions {
   double pixel_mm = 0.3;
   int check_rays = 240;
   int picture_pixels = 720;
-  int sample_vertices = 20000;
+  int scene_vertices = 20000;
 
   static constexpr auto parameters = std::tuple{
       parameter(
@@ -181,7 +181,7 @@ struct ForestOptions {
           .group("Output")
           .slider(400, 1600)
           .advanced(),
-      parameter("sample_vertices", &ForestOptions::sample_vertices, "Vertices of the samples", unit::none, 500, 500000,
+      parameter("scene_vertices", &ForestOptions::scene_vertices, "Vertices of the samples", unit::none, 500, 500000,
                 "Number of vertices of each model of the built-in scene. Fewer are solved faster and show less detail.")
           .group("Output")
           .slider(2000, 60000)

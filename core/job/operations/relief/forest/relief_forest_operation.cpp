@@ -117,7 +117,7 @@ std::shared_ptr<const LoadedModel> model_of(const OperationCall& call, const For
 ForestInput read_forest(const OperationCall& call, const ForestOptions& options) {
   ForestInput input;
   const auto scene = call.inputs.find(scene_file);
-  input.file = scene == call.inputs.end() ? sample_forest_scene(options.sample_vertices)
+  input.file = scene == call.inputs.end() ? sample_forest_scene(options.scene_vertices)
                                           : read_forest_scene(*scene->second.bytes);
   const std::size_t count = input.file.models.size();
   for (std::size_t v = 0; v < count; ++v) {

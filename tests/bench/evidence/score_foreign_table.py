@@ -96,6 +96,10 @@ Sheets that `tests/foreign_laboratory` formed, with a simulation of another kind
 - *Named first*: the verdict's first cause is the hidden one. *In doubt*: the report doubts its answer.
 - *Moved*: mean movement of the measured marks against the sheet of the same seed without fault.
 - Strengths are those of the laboratory (`tests/foreign_laboratory/faults.h`), ± is half the diagnosis's 95 % interval in its own unit.""")
+    if not cases:
+        print("\nNo case has been answered yet.")
+        return
+    print(f"\n{len(cases)} cases, {sum(c['cause'] == 'none' for c in cases)} of them clean.")
     table("All cases", [("every mould", strong)] + [(mould, [c for c in strong if c["mould"] == mould]) for mould in moulds])
     seen = [c for c in strong if c["cause"] == "none" or visible(c)]
     table("Only causes that the answer lists as visible", [("every mould", seen)])

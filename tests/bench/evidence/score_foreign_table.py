@@ -117,8 +117,8 @@ Sheets that `tests/foreign_laboratory` formed, with a simulation of another kind
         if clean:
             print(f"\nClean sheets: mean distance of {statistics.median(clean):.2f} mm (median) between sheet and calibrated simulation on held-out blocks, noise alone would give "
                   f"{statistics.median(c['noise_floor_mm'] for c in good if c['cause'] == 'none'):.2f} mm.")
-        print(f"\nSeconds for a case: {statistics.median(c['seconds_forming'] for c in good):.0f} to form, {statistics.median(c['seconds_diagnosing'] for c in good):.0f} to diagnose "
-              f"(medians). Failed: {len(cases) - len(good)}.")
+        print(f"\nMedian wall time of a case, with whatever else the machine did: {statistics.median(c['seconds_forming'] for c in good):.0f} s to form, "
+              f"{statistics.median(c['seconds_diagnosing'] for c in good):.0f} s to diagnose. Failed: {len(cases) - len(good)}.")
     print("\n## Every answer\n\n| hidden | strength | mould | moved mm | answer | likeliest causes | error before → after, mm | seed |\n|---|---|---|---:|---|---|---|---:|")
     for c in cases:
         errors = f"{c['error_before_mm']:.2f} → {c['error_after_mm']:.2f}" if "error" not in c else ""

@@ -74,7 +74,7 @@ Faults draw_faults(std::string_view cause, double level, std::mt19937_64& random
   else {
     std::string list = "none";
     for (const std::string_view name : cause_names) list += ", " + std::string(name);
-    throw std::invalid_argument("cause: '" + std::string(cause) + "' is none of " + list);
+    throw std::invalid_argument("cause: '" + std::string(cause) + "' is not known; give one of " + list);
   }
   return f;
 }

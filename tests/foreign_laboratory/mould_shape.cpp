@@ -116,7 +116,8 @@ Distance distance_to_nearest(const Parts& parts, const Vector3d& place) {
 Mould mould_of(std::string_view name) {
   for (std::size_t k = 0; k < mould_names.size(); ++k)
     if (mould_names[k] == name) return static_cast<Mould>(k);
-  throw std::invalid_argument("mould: '" + std::string(name) + "' is none of dome, cone, box, pyramid, bumps, cross");
+  throw std::invalid_argument("mould: '" + std::string(name) +
+                              "' is not known; give one of dome, cone, box, pyramid, bumps, cross");
 }
 
 Distance distance_to(Mould mould, const Vector3d& place) {

@@ -80,6 +80,10 @@ Sheets that `tests/foreign_laboratory` formed, with a simulation of another kind
 - *Named first*: the verdict's first cause is the hidden one. *In doubt*: the report doubts its answer.
 - *Moved*: mean movement of the measured marks against the sheet of the same seed without fault.
 - Strengths are those of the laboratory (`tests/foreign_laboratory/faults.h`), ± is half the diagnosis's 95 % interval in its own unit.""")
+    if not cases:
+        print("\nNo case has been answered yet.")
+        return
+    print(f"\n{len(cases)} cases, {sum(c['cause'] == 'none' for c in cases)} of them clean.")
     table("All cases", [("every mould", strong)] + [(mould, [c for c in strong if c["mould"] == mould]) for mould in moulds])
     seen = [c for c in strong if c["cause"] == "none" or visible(c)]
     table("Only causes that the answer lists as visible", [("every mould", seen)])
@@ -97,8 +101,8 @@ Sheets that `tests/foreign_laboratory` formed, with a simulation of another kind
         if clean:
             print(f"\nClean sheets: mean distance of {statistics.median(clean):.2f} mm (median) between sheet and calibrated simulation on held-out blocks, noise alone would give "
                   f"{statistics.median(c['noise_floor_mm'] for c in good if c['cause'] == 'none'):.2f} mm.")
-        print(f"\nSeconds for a case: {statistics.median(c['seconds_forming'] for c in good):.0f} to form, {statistics.median(c['seconds_diagnosing'] for c in good):.0f} to diagnose "
-              f"(medians). Failed: {len(cases) - len(good)}.")
+        print(f"\nMedian wall time of a case, with whatever else the machine did: {statistics.median(c['seconds_forming'] for c in good):.0f} s to form, "
+              f"{statistics.median(c['seconds_diagnosing'] for c in good):.0f} s to diagnose. Failed: {len(cases) - len(good)}.")
     print("\n## Every answer\n\n| hidden | strength | mould | moved mm | answer | likeliest causes | error before → after, mm | seed |\n|---|---|---|---:|---|---|---|---:|")
     for c in cases:
         errors = f"{c['error_before_mm']:.2f} → {c['error_after_mm']:.2f}" if "error" not in c else ""

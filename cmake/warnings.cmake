@@ -8,7 +8,7 @@ option(FORMWRIGHT_WARNINGS_AS_ERRORS "Stop at warnings in our own code" ON)
 add_library(fw_warnings INTERFACE)
 target_compile_options(fw_warnings INTERFACE
   $<$<BOOL:${FORMWRIGHT_WARNINGS_AS_ERRORS}>:-Werror>
-  -Wall -Wextra -Wshadow -Wconversion -Wnon-virtual-dtor -Woverloaded-virtual
+  -Wall -Wextra $<$<NOT:$<BOOL:$<TARGET_PROPERTY:FORMWRIGHT_NAMES_MAY_HIDE>>>:-Wshadow> -Wconversion -Wnon-virtual-dtor -Woverloaded-virtual
   # Eigen's indices are signed, the standard library's sizes are not.
   -Wno-sign-conversion)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")

@@ -83,7 +83,7 @@ Sheets that `tests/foreign_laboratory` formed, with a simulation of another kind
     if not cases:
         print("\nNo case has been answered yet.")
         return
-    print(f"\n{len(cases)} cases, {sum(c['cause'] == 'none' for c in cases)} of them clean.")
+    print(f"\nCases: {len(cases)}, {sum(c['cause'] == 'none' for c in cases)} of them clean.")
     table("All cases", [("every mould", strong)] + [(mould, [c for c in strong if c["mould"] == mould]) for mould in moulds])
     seen = [c for c in strong if c["cause"] == "none" or visible(c)]
     table("Only causes that the answer lists as visible", [("every mould", seen)])

@@ -30,8 +30,7 @@ Distance MouldOnPlate::distance_from(const Vector3d& place, double plate_z_mm) c
   return mould;
 }
 
-double MouldOnPlate::constrain(const Vector3d& place, double clearance_mm, const Step& step,
-                               Vector3d& velocity) const {
+double MouldOnPlate::constrain(const Vector3d& place, double clearance_mm, const Step& step, Vector3d& velocity) const {
   // A point in the corner between mould and plate meets first the one, then the other.
   constexpr int max_surfaces = 2;
   double left = 0;

@@ -42,9 +42,9 @@ struct Faults {
 };
 
 inline constexpr std::array<std::string_view, 15> cause_names = {
-    "heating_gradient", "heating_centre", "slip",        "anisotropy",     "thickness_wedge",
-    "cooling",          "weak_vacuum",    "clamp_slip",  "mould_shift",    "mould_rotation",
-    "mould_scale",      "print_scale",    "scan_scale",  "scan_shift",     "print_stretch"};
+    "heating_gradient", "heating_centre", "slip",       "anisotropy",  "thickness_wedge",
+    "cooling",          "weak_vacuum",    "clamp_slip", "mould_shift", "mould_rotation",
+    "mould_scale",      "print_scale",    "scan_scale", "scan_shift",  "print_stretch"};
 
 /// Whether the diagnosis has the cause in its list.
 inline bool is_in_the_list(std::string_view cause) { return cause != "print_stretch"; }

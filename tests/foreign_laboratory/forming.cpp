@@ -46,9 +46,9 @@ class Forming {
     kelvin_.resize(count);
     for (int node = 0; node < grid.node_count(); ++node) {
       const double xi = 2 * grid.flat_mm(node).x() / grid.width_mm, eta = 2 * grid.flat_mm(node).y() / grid.length_mm;
-      kelvin_[static_cast<std::size_t>(node)] =
-          world.polymer.forming_temperature_k - faults.colder_right_k * xi - faults.colder_back_k * eta -
-          faults.colder_corners_k * (xi * xi + eta * eta - 1);
+      kelvin_[static_cast<std::size_t>(node)] = world.polymer.forming_temperature_k - faults.colder_right_k * xi -
+                                                faults.colder_back_k * eta -
+                                                faults.colder_corners_k * (xi * xi + eta * eta - 1);
     }
     motion_.membrane().set_temperatures(kelvin_);
     thickness_ = motion_.membrane().thickness_mm(motion_.place());
@@ -154,8 +154,7 @@ class Forming {
       for (const int node : corners)
         inside[static_cast<std::size_t>(node)] = std::max(inside[static_cast<std::size_t>(node)], mm);
     }
-    for (std::size_t n = 0; n < inside.size(); ++n)
-      raised_[n] = touched_[n] ? 0.5 * (raised_[n] + inside[n]) : 0;
+    for (std::size_t n = 0; n < inside.size(); ++n) raised_[n] = touched_[n] ? 0.5 * (raised_[n] + inside[n]) : 0;
   }
 
   /// A loose clamp: the rim comes in at a speed that grows with the pull beyond what the clamp holds.
@@ -215,8 +214,7 @@ class Forming {
     }
     sheet.clamp_feed_mm = feed / rim;
     for (int cell = 0; cell < grid.cell_count(); ++cell)
-      sheet.inside_cell_mm =
-          std::max(sheet.inside_cell_mm, inside_of_cell(cell, sheet.place_mm, sheet.thickness_mm));
+      sheet.inside_cell_mm = std::max(sheet.inside_cell_mm, inside_of_cell(cell, sheet.place_mm, sheet.thickness_mm));
     return sheet;
   }
 

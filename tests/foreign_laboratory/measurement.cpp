@@ -180,9 +180,8 @@ std::map<std::string, std::string> make_object(const Request& request) {
   for (const auto& [name, value] : values_of(faults)) truth["values"][name] = value;
   const double colder_k = std::hypot(faults.colder_right_k, faults.colder_back_k) + std::abs(faults.colder_corners_k);
   if (colder_k > 0)
-    truth["stiffness_ratios"] = {
-        stiffness_ratio(world.polymer, world.polymer.forming_temperature_k - colder_k),
-        stiffness_ratio(world.polymer, world.polymer.forming_temperature_k + colder_k)};
+    truth["stiffness_ratios"] = {stiffness_ratio(world.polymer, world.polymer.forming_temperature_k - colder_k),
+                                 stiffness_ratio(world.polymer, world.polymer.forming_temperature_k + colder_k)};
   return {{"mould.obj", write_obj(triangulate(request.mould))},
           {"setup.json", setup_json(machine, world.polymer)},
           {"measured.csv", measured_csv(scan(sheet, marks, faults, request.scan, of_noise))},

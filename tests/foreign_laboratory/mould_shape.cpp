@@ -34,8 +34,7 @@ Ball dome() {
 
 /// Balls that all contain the origin, so that rays from there meet the surface once.
 const std::array<Ball, 3>& bumps() {
-  static const std::array<Ball, 3> balls = {
-      Ball{{-20, -12, 10}, 32}, Ball{{22, -6, 4}, 30}, Ball{{-2, 24, 0}, 28}};
+  static const std::array<Ball, 3> balls = {Ball{{-20, -12, 10}, 32}, Ball{{22, -6, 4}, 30}, Ball{{-2, 24, 0}, 28}};
   return balls;
 }
 
@@ -96,8 +95,7 @@ Distance distance_to(const Block& block, const Vector3d& place) {
                         std::abs(place.y()) - (block.half_y_mm - block.radius_mm),
                         place.z() - (block.height_mm - block.radius_mm));
   const Vector3d outside = beyond.cwiseMax(0);
-  if (outside.squaredNorm() > 0)
-    return {outside.norm() - block.radius_mm, unit(outside).cwiseProduct(sign)};
+  if (outside.squaredNorm() > 0) return {outside.norm() - block.radius_mm, unit(outside).cwiseProduct(sign)};
   Eigen::Index nearest = 0;
   const double inside = beyond.maxCoeff(&nearest);
   return {inside - block.radius_mm, Vector3d::Unit(nearest).cwiseProduct(sign)};

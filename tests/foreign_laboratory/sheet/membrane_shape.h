@@ -16,7 +16,7 @@ using Vector4 = std::array<Four, 3>;
 inline const double gauss = 1 / std::sqrt(3.0);
 inline const Four low_x = 0.5 * (1 - Four(-gauss, gauss, gauss, -gauss)), high_x = 1 - low_x;
 inline const Four low_y = 0.5 * (1 - Four(-gauss, -gauss, gauss, gauss)), high_y = 1 - low_y;
-inline const std::array<Four, 4> corner_weight = {low_x * low_y, high_x * low_y, high_x * high_y, low_x * high_y};
+inline const std::array<Four, 4> corner_weight = {low_x * low_y, high_x* low_y, high_x* high_y, low_x* high_y};
 
 }  // namespace membrane_detail
 

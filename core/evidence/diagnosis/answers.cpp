@@ -43,7 +43,7 @@ const char* failure_name(Failure failure) {
 
 const char* failure_sentence(Failure failure) {
   switch (failure) {
-    case Failure::too_small: return "It would fit, but moves points by less than the simulation's own error.";
+    case Failure::too_small: return "It would fit, but moves points by less than half of the simulation's own error.";
     case Failure::predicts_no_better: return "It would fit, but does not predict the points that were left out better.";
     case Failure::near_zero:
       return "It would fit, but with so many causes tried, chance gives a strength like this, too.";

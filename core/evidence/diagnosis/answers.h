@@ -8,7 +8,7 @@ namespace formwright {
 
 /// Why a cause that fits is not believed.
 enum class Failure {
-  too_small,            // it moves points by less than the simulation's own error
+  too_small,            // it moves points by less than half of the simulation's own error
   predicts_no_better,   // of points that were left out of the fit
   near_zero,            // its strength, with so many causes tried
   like_the_material,    // another material does the same to these data

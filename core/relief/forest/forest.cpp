@@ -168,8 +168,7 @@ SolvedForest solve_forest(const ForestPlan& plan,
   forest.standing = standing_forest(meshes);
   forest.caster = std::make_shared<const RayCaster>(forest.standing.mesh);
   std::vector<CheckedView> checked;
-  for (std::size_t v = 0; v < views; ++v)
-    checked.push_back({plan.views[v], frames[v], faces[v], forest.reliefs[v], forest.grids[v]});
+  for (std::size_t v = 0; v < views; ++v) checked.push_back({plan.views[v], frames[v], faces[v], forest.grids[v]});
   for (std::size_t v = 0; v < views; ++v) {
     context.progress(static_cast<double>(v) / static_cast<double>(views));
     forest.checks.push_back(check_view(checked, v, pillars, forest.standing, *forest.caster, options.check_rays,

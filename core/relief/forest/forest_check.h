@@ -21,7 +21,6 @@ struct CheckedView {
   const ForestView& view;
   const ViewFrame& frame;  // of the model
   const Triangles& model_F;
-  const ForestRelief& relief;
   const std::vector<PieceGrid>& grids;
 };
 

@@ -150,21 +150,9 @@ struct ForestOptions {
                 "How much wider the holes of the floor plan are than the pins. 0.2 mm fits most printed pins.")
           .group("Floor")
           .slider(0, 1),
-      parameter(
-          "bounded_vertices", &ForestOptions::bounded_vertices, "Back of the relief",
-          "Flat keeps the whole model within the thickness. May sink lets the hidden back go deeper, which distorts the visible side less.")
-          .group("Shape")
-          .advanced(),
-      parameter(
-          "hidden_weight", &ForestOptions::hidden_weight, "How much the back matters", unit::none, 0.001, 1,
-          "How much the shape of parts hidden from the viewer matters. Smaller values distort visible parts less.")
-          .group("Shape")
-          .slider(0.01, 1)
-          .advanced(),
-      parameter("depth_order", &ForestOptions::depth_order, "Keep the depth order",
-                "Keeps what is in front in front, so that parts do not pass through each other.")
-          .group("Shape")
-          .advanced(),
+      bounded_vertices_parameter(&ForestOptions::bounded_vertices).advanced(),
+      hidden_weight_parameter(&ForestOptions::hidden_weight),
+      depth_order_parameter(&ForestOptions::depth_order).advanced(),
       parameter(
           "pixel_mm", &ForestOptions::pixel_mm, "Detail of the solids", unit::mm, 0.05, 10,
           "Spacing of the points on the pillars' surfaces at which the relief is taken. Smaller shows finer detail and takes longer.")

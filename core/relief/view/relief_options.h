@@ -45,6 +45,31 @@ struct EnumNames<Appearance> {
   static constexpr std::array<std::string_view, 2> labels{"Crisp detail", "Detail and broad forms"};
 };
 
+/// Of whatever solves reliefs and has such a member.
+template <class Options>
+constexpr auto bounded_vertices_parameter(BoundedVertices Options::*member) {
+  return parameter(
+             "bounded_vertices", member, "Back of the relief",
+             "Flat keeps the whole model within the thickness. May sink lets the hidden back go deeper than the plate's face, which distorts the visible side less.")
+      .group("Shape");
+}
+template <class Options>
+constexpr auto hidden_weight_parameter(double Options::*member) {
+  return parameter(
+             "hidden_weight", member, "How much the back matters", unit::none, 0.001, 1,
+             "How much the shape of parts hidden from the viewer matters. 1: as much as the visible parts; smaller values let hidden parts distort more so that visible ones distort less.")
+      .group("Shape")
+      .slider(0.01, 1)
+      .advanced();
+}
+template <class Options>
+constexpr auto depth_order_parameter(bool Options::*member) {
+  return parameter(
+             "depth_order", member, "Keep the depth order",
+             "Keeps what is in front in front, so that parts do not pass through each other. Off: parts may cross.")
+      .group("Shape");
+}
+
 struct ReliefOptions {
   double thickness_mm = 5;
   double width_mm = 120;
@@ -149,23 +174,13 @@ struct ReliefOptions {
           .only_with("projection", "perspective")
           .slider(50, 2000)
           .advanced(),
-      parameter(
-          "bounded_vertices", &ReliefOptions::bounded_vertices, "Back of the relief",
-          "Flat keeps the whole model within the thickness. May sink lets the hidden back go deeper than the plate's face, which distorts the visible side less.")
-          .group("Shape"),
+      bounded_vertices_parameter(&ReliefOptions::bounded_vertices),
       parameter(
           "appearance", &ReliefOptions::appearance, "Appearance",
           "Crisp detail keeps fine detail best and flattens broad forms. Detail and broad forms keeps soft, large forms too, so that the relief looks more like the model; it takes about twice as long.")
           .group("Shape"),
-      parameter(
-          "hidden_weight", &ReliefOptions::hidden_weight, "How much the back matters", unit::none, 0.001, 1,
-          "How much the shape of parts hidden from the viewer matters. 1: as much as the visible parts; smaller values let hidden parts distort more so that visible ones distort less.")
-          .group("Shape")
-          .slider(0.01, 1)
-          .advanced(),
-      parameter("depth_order", &ReliefOptions::depth_order, "Keep the depth order",
-                "Keeps what is in front in front, so that parts do not pass through each other. Off: parts may cross.")
-          .group("Shape"),
+      hidden_weight_parameter(&ReliefOptions::hidden_weight),
+      depth_order_parameter(&ReliefOptions::depth_order),
       parameter(
           "pixel_mm", &ReliefOptions::pixel_mm, "Detail of the STL", unit::mm, 0.01, 10,
           "Spacing of the points in the height map and in the exported solid. Smaller shows finer detail and makes larger files; half the width of the nozzle or tool is fine enough.")

@@ -34,7 +34,8 @@ PageLayout page_layout(const ThermoformPrintOptions& options);
 Bytes write_print_pdf(const Image& picture, const PrintGrid& grid, const PageLayout& layout,
                       const ThermoformPrintOptions& options, Context& context);
 
-/// Pixels per metre for the picture's file: the printer makes them (1 + print_scale) times as large as it is told.
+/// Pixels per metre for the picture's file, rounded: the printer makes each (1 + print_scale) times as large as the
+/// file says.
 int sent_per_metre(const PrintGrid& grid, const ThermoformPrintOptions& options);
 
 /// The picture as one file would show it: with marks, and mirrored where asked for.

@@ -55,7 +55,7 @@ def inside(case):
 def by_mould(cases, clean):
     """Every case counts, whether its cause can show in its data or not."""
     levels = sorted({c["level"] for c in cases}, reverse=True)
-    print("\n## Named first, all cases\n\nNo case is left out: causes that these data cannot show count as missed. Intervals are 95 %.\n")
+    print("## Named first, all cases\n\nNo case is left out: causes that these data cannot show count as missed. Intervals are 95 %.\n")
     print("| mould | " + " | ".join(named_level.get(level, str(level)) for level in levels) + " | nothing hidden: an alarm |")
     print("|---|" + "---|" * (len(levels) + 1))
     rows = [(mould, lambda c, mould=mould: c["mould"] == mould) for mould in sorted({c["mould"] for c in cases + clean})]

@@ -51,14 +51,14 @@ def matrices(pdf):
 def check_png(folder, expected, image_module):
     for name in ("print.png", "picture.png"):
         image = image_module.open(folder / name)
-        # Half a pixel of the picture, and half a pixel per metre that a file cannot state.
-        tolerances = [(510 + 0.5 * side) / expected["per_metre"] for side in expected["sheet_mm"]]
         printed = 1 + expected["print_scale"] if name == "print.png" else 1
+        # A file states whole pixels per metre: where a scale is made up for, half of one is lost.
+        lost = 0.5 if printed != 1 else 0
         if list(image.size) != expected["pixels"] or image.mode != "RGB":
             sys.exit(f"{name} is {image.size} {image.mode}")
         for k in range(2):
-            near(f"resolution of {name}", image.info["dpi"][k], expected["per_metre"] * 0.0254 * printed, 0.02)
-            near(f"size of {name} in mm", image.size[k] / image.info["dpi"][k] * 25.4 * printed, expected["sheet_mm"][k], tolerances[k])
+            near(f"resolution of {name}", image.info["dpi"][k], expected["per_metre"] * 0.0254 * printed, 0.01 + lost * 0.0254)
+            near(f"size of {name} in mm", image.size[k] / image.info["dpi"][k] * 25.4 * printed, expected["sheet_mm"][k], (510 + lost * expected["sheet_mm"][k]) / expected["per_metre"])
     image = image_module.open(folder / "print.png")
     sign = -1 if expected["mirrored"] else 1
     for mark in expected["marks"]:
@@ -121,7 +121,8 @@ def reassemble(folder, expected, image_module):
     picture = image_module.open(folder / "picture.png").convert("RGB")
     pages = sorted(folder.glob("page-*.png"))
     scale = DOTS_PER_INCH / 25.4
-    dot_mm = 1 / scale  # what a tile's edge cuts through is on the neighbouring tile, too
+    # Scaled, a tile's edge cuts through dots; these are on the neighbouring tile, too.
+    dot_mm = 1 / scale if expected["print_scale"] else 0
     seen = bytearray(picture.width * picture.height)
     wrong = compared = 0
     for tile, path in zip(expected["tiles"], pages):

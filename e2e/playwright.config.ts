@@ -40,7 +40,7 @@ export default defineConfig({
   use: {
     baseURL: server.url,
     viewport: { width: 1280, height: 800 },
-    trace: 'retain-on-failure',
+    trace: process.env['CI'] ? 'on-first-retry' : 'retain-on-failure', // recording slows the page by a fifth
     launchOptions: {
       executablePath:
         process.env['CHROMIUM'] ??

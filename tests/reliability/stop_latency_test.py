@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """How long a stop takes from the page's request to the wire, while solvers use every core, large jobs are loaded for another machine, large models
 arrive with jobs for the solver, and clients ask for pictures. Every second stop comes from a page that connects for it. With --slow-disk every fsync of the worker takes
-a second longer. With --pty the line is a pseudo terminal.
+a second longer. With --pty the line is a pseudo terminal: the kernel hands its bytes on when a thread of its own has its turn, which no serial port does, so that
+what is required there is the time to the worker's write.
 Usage: stop_latency_test.py PROGRAM VIRTUAL_GRBL PEERS [--stops N] [--job-mb N] [--model-mb N] [--seed N] [--require-ms N] [--slow-disk LIBRARY] [--pty]"""
 import argparse
 import http.client
@@ -109,6 +110,11 @@ def measure_first(process: int) -> bool:
         return False
 
 
+def load_only() -> None:
+    """A thread that is load, not measure, has an ordinary one's turn: it began with that of the thread that started it."""
+    os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))
+
+
 def raster(megabytes: float) -> bytes:
     line = b"".join(b"G1 X%d.5 Y%d.25 S%d F3000\n" % (x, x % 7, x % 1000) for x in range(100))
     return b"G21\nG90\nM4 S0\n" + line * max(1, int(megabytes * 1e6 / len(line))) + b"M5\n"
@@ -123,6 +129,7 @@ def model(megabytes: float) -> bytearray:
 
 def keep_posting(worker: Worker, megabytes: float, over: threading.Event, posts: list[float]) -> None:
     """Models that the worker has not seen, each with its job."""
+    load_only()
     content = model(megabytes)
     while not over.is_set():
         content[:8] = struct.pack("<Q", len(posts))
@@ -151,6 +158,7 @@ def home(page: MachineSocket) -> None:
 
 
 def keep_loading(worker: Worker, machine: str, content: bytes, over: threading.Event, loads: list[float]) -> None:
+    load_only()
     page, job = connect(worker, machine), worker.put_blob(content)
     while not over.is_set():
         start = time.monotonic()
@@ -228,9 +236,9 @@ def main() -> int:
             poster = threading.Thread(target=keep_posting, args=(worker, options.model_mb, over, posts), daemon=True)
             poster.start()
             # Ordinary programs of their own: they are load, and do not measure.
-            askers = [subprocess.Popen(["nice", "-n", "0", sys.executable, __file__, "--ask-for-pictures", str(worker.port)], preexec_fn=lambda: os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0)))
+            askers = [subprocess.Popen(["nice", "-n", "0", sys.executable, __file__, "--ask-for-pictures", str(worker.port)], preexec_fn=load_only)
                       for _ in range(CLIENTS)]
-            job, taken, connected, inside = worker.post_job(**LONG_JOB), [], [], []
+            job, taken, connected, all_asked = worker.post_job(**LONG_JOB), [], [], []
             clocks_s = time.time() - time.monotonic()
             for number in range(options.stops):
                 if worker.json("GET", f"/api/jobs/{job}")[1]["state"] in ("done", "failed"):
@@ -238,8 +246,8 @@ def main() -> int:
                 connects = number % 2 == 1
                 asked, heard = stop_once(page, line, chance, (lambda: MachineSocket(worker, machine)) if connects else None)
                 (connected if connects else taken).append(1000 * (heard - asked))
-                inside.append(asked)
-            inside = [1000 * (written - clocks_s - asked) for written, asked in zip(written_s(data, machine, options.stops), inside)][::2]
+                all_asked.append(asked)
+            inside = [1000 * (written - clocks_s - asked) for written, asked in zip(written_s(data, machine, options.stops), all_asked)]
         finally:
             over.set()
             for asker in askers:
@@ -252,10 +260,13 @@ def main() -> int:
                 one.stop()
     print(f"seed {options.seed}, load average {os.getloadavg()[0]:.1f} on {os.cpu_count()} cores, {len(loads)} jobs of {options.job_mb:g} MB loaded and {len(posts)} models of {options.model_mb:g} MB posted meanwhile, "
           f"measured {'ahead of' if measures_first else 'among'} other programs")
-    for what, figures in (("from request to wire", taken), ("from request to the worker's write", inside), ("from a connecting page to wire", connected)):
+    rows = (("from request to wire", taken), ("from request to the worker's write", inside[::2]),
+            ("from a connecting page to wire", connected), ("from a connecting page to the worker's write", inside[1::2]))
+    required_ms = max(inside if options.pty else taken + connected)
+    for what, figures in rows:
         figures.sort()
         print(f"{len(figures)} stops {what}: median {figures[len(figures) // 2]:.1f} ms, 90 % {figures[len(figures) * 9 // 10]:.1f} ms, max {figures[-1]:.1f} ms")
-    return 0 if max(taken + connected) <= options.require_ms else 1
+    return 0 if required_ms <= options.require_ms else 1
 
 
 if __name__ == "__main__":

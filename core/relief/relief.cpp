@@ -76,7 +76,8 @@ void set_start(const ViewFrame& frame, const DepthBounds& bounds, BoundedQpConst
   // What is not bounded and has no base behind it stays where the flat base would have it.
   for (Eigen::Index i = 0; i < n; ++i)
     if (bounds.farthest[i] > bounds.nearest[i])
-      c.start_u[i] = compressed[i] + (1 + frame.kappa * compressed[i]) * c.start_m[c.group[static_cast<std::size_t>(i)]];
+      c.start_u[i] =
+          compressed[i] + (1 + frame.kappa * compressed[i]) * c.start_m[c.group[static_cast<std::size_t>(i)]];
 }
 
 /// The scale of each group, eq. (3.11), as m with mu = 1 + kappa m. Where the bounds leave it free, the relief is put

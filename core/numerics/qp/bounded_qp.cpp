@@ -103,7 +103,7 @@ BoundedQp::Implementation::Outcome BoundedQp::Implementation::solve(const Rows& 
                max_work_of_exchange = std::max(min_exchange_work, exchange_only_share * interior_point_work());
   double tried = 0;
   if (options.method != QpMethod::interior_point) {
-    tried = options.max_exchange_work > 0 ? options.max_exchange_work
+    tried = options.max_exchange_work > 0          ? options.max_exchange_work
             : options.method == QpMethod::exchange ? max_work_of_exchange
                                                    : work_of_try;
     if (exchange_within(tried)) return outcome;

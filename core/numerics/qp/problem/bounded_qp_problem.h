@@ -25,8 +25,8 @@ struct BoundedQpConstraints {
   Eigen::VectorXd gauge;  // n
   /// A point well within the bounds (n, group_count), or empty. The interior point starts there.
   Eigen::VectorXd start_u, start_m;
-  /// Whether it satisfies the rows, too. An answer that has to be given before the optimum is found then moves towards it
-  /// until it satisfies every row.
+  /// Whether it satisfies the rows, too. An answer that has to be given before the optimum is found then moves towards
+  /// it until it satisfies every row.
   bool start_satisfies_rows = false;
 };
 

@@ -43,11 +43,41 @@ BoundedQpConstraints constraints_of(const ViewFrame& frame, const DepthBounds& b
   return c;
 }
 
-/// Linear compression as a point of the constraints, moved to their gauge.
-void set_inside(const ViewFrame& frame, const Eigen::VectorXd& compressed, BoundedQpConstraints& c) {
-  const double mean = compressed.mean(), m = -mean / (1 + frame.kappa * mean);
-  c.inside_u = (compressed.array() + (1 + frame.kappa * compressed.array()) * m).matrix();
-  c.inside_m = Eigen::VectorXd::Constant(1, m);
+/// Linear compression as the point where the solution starts. The scale of each group brings its bounded vertices, on
+/// the mean, to where compression on a flat base would have them, so that neighbouring groups meet there.
+void set_start(const ViewFrame& frame, const DepthBounds& bounds, BoundedQpConstraints& c) {
+  const Eigen::Index n = frame.P.rows();
+  double low = infinity, high = -infinity, depth = 0, room = 0;
+  int bounded = 0;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    if (!bounds.bounded[static_cast<std::size_t>(i)]) continue;
+    low = std::min(low, frame.P(i, 2));
+    high = std::max(high, frame.P(i, 2));
+    depth += frame.P(i, 2);
+    room += bounds.farthest[i] - bounds.nearest[i];
+    ++bounded;
+  }
+  if (bounded == 0) return;
+  const double middle = depth / bounded, compression = high > low ? room / bounded / (high - low) : 1;
+  const Eigen::VectorXd compressed = linear_compression(frame, bounds);
+  c.start_u.resize(n);
+  Eigen::VectorXd flat = Eigen::VectorXd::Zero(c.group_count), own = flat, count = flat;
+  for (int i = 0; i < n; ++i) {
+    c.start_u[i] = frame.u_for_depth(i, middle + (frame.P(i, 2) - middle) * compression);
+    if (!bounds.bounded[static_cast<std::size_t>(i)]) continue;
+    const int g = c.group[static_cast<std::size_t>(i)];
+    flat[g] += c.start_u[i];
+    own[g] += compressed[i];
+    count[g] += 1;
+  }
+  c.start_m = Eigen::VectorXd::Zero(c.group_count);
+  for (int g = 0; g < c.group_count; ++g)
+    if (count[g] > 0) c.start_m[g] = (flat[g] - own[g]) / (count[g] + frame.kappa * own[g]);
+  // What is not bounded and has no base behind it stays where the flat base would have it.
+  for (Eigen::Index i = 0; i < n; ++i)
+    if (bounds.farthest[i] > bounds.nearest[i])
+      c.start_u[i] =
+          compressed[i] + (1 + frame.kappa * compressed[i]) * c.start_m[c.group[static_cast<std::size_t>(i)]];
 }
 
 /// The scale of each group, eq. (3.11), as m with mu = 1 + kappa m. Where the bounds leave it free, the relief is put
@@ -229,8 +259,9 @@ Relief ReliefSolver::solve_within(const ReliefOptions& options, const DepthBound
                          [&](const InequalityRow& row) { return can_hold(row, bounds, constraints); });
 
   Relief relief;
+  set_start(frame_, bounds, constraints);
   // On a curved base linear compression need not keep the order.
-  if (lent) set_inside(frame_, linear_compression(frame_, bounds), constraints);
+  constraints.start_satisfies_rows = lent;
   BoundedQpOptions qp_options;
   qp_options.method = options.method;
   qp_options.violation_tolerance = 1e-9 * (options.thickness_mm + options.carve_depth_mm) / options.width_mm;

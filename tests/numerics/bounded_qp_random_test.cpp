@@ -37,6 +37,21 @@ double violation(const BoundedQpConstraints& c, const BoundedQpSolution& s) {
   return worst;
 }
 
+/// The same problem with a point to start from that is anywhere within the bounds, whatever the rows say.
+RandomProblem with_start(RandomProblem p, std::uint64_t seed) {
+  test::Random random(seed);
+  BoundedQpConstraints& c = p.constraints;
+  c.start_u = p.feasible_u;
+  c.start_m = p.feasible_m;
+  for (Eigen::Index i = 0; i < c.start_u.size(); ++i) {
+    const double m = c.start_m[c.group[static_cast<std::size_t>(i)]];
+    const double low = std::max(c.lower[i] + c.lower_slope[i] * m, c.start_u[i] - 1),
+                 high = std::min(c.upper[i] + c.upper_slope[i] * m, c.start_u[i] + 1);
+    c.start_u[i] = random.between(low, high);
+  }
+  return p;
+}
+
 struct Case {
   const char* name;
   RandomProblemSettings settings;
@@ -92,6 +107,19 @@ TEST_CASE("BoundedQpRandom.EqualsDenseReference") {
         }
         CHECK(s.kkt_residual < 1e-9);
       }
+    }
+  }
+}
+
+TEST_CASE("BoundedQpRandom.IsTheSameFromAnyPointWithinTheBounds") {
+  for (const Case& example : cases()) {
+    for (std::uint64_t seed = 0; seed < 30; ++seed) {
+      INFO(std::string(example.name) + ", seed " + std::to_string(seed));
+      const RandomProblem p = test::random_problem(seed, example.settings);
+      const BoundedQpSolution usual = solve_random(p);
+      const BoundedQpSolution s = solve_random(with_start(p, seed), {.method = QpMethod::interior_point});
+      CHECK(violation(p.constraints, s) <= 1e-9);
+      CHECK_THAT(s.objective, WithinAbs(usual.objective, 1e-9 * (1 + usual.objective)));
     }
   }
 }

@@ -213,6 +213,23 @@ TEST_CASE("ReliefOnStairs.StepsOfOneHeightAreAPlate") {
   CHECK(steps.relief.energy <= plate.energy * (1 + 1e-9));
 }
 
+TEST_CASE("ReliefOnStairs.BothMethodsFindTheSameThinRelief") {
+  // Both methods find the optimum. The interior point begins within the bounds, not where the exchange stood when its
+  // work ran out: pieces that nothing holds yet lie far away there.
+  TriangleMesh mesh = test::icosphere(5);
+  for (Eigen::Index i = 0; i < mesh.V.rows(); ++i)
+    mesh.V.row(i) *= 1 + 0.1 * std::sin(9 * mesh.V(i, 0)) * std::sin(7 * mesh.V(i, 1)) * std::sin(8 * mesh.V(i, 2));
+  ReliefOptions options = stairs(Projection::perspective, 5, 60);
+  options.thickness_mm = 1;
+  options.method = QpMethod::exchange;
+  const Relief exchange = solved_on_stairs(mesh, options).relief;
+  options.method = QpMethod::interior_point;
+  const Relief point = solved_on_stairs(mesh, options).relief;
+  CHECK_THAT(point.qp.objective, WithinRel(exchange.qp.objective, 1e-6));
+  CHECK(point.qp.interior_point_iterations < 25);
+  CHECK_THAT(point.energy, WithinRel(exchange.energy, 1e-6));
+}
+
 TEST_CASE("ReliefOnStairs.TheSolidHasOneReliefAStep") {
   const Solved s = solved_on_stairs(test::icosphere(4), stairs(Projection::perspective, 4, 60));
   Context context;

@@ -99,13 +99,13 @@ BoundedQp::Implementation::Outcome BoundedQp::Implementation::solve(const Rows& 
     else add_base_reactions(energy, rows, base, outcome.result);
     return !outcome.result.stopped;
   };
-  const double max_work_of_exchange = std::max(min_exchange_work, exchange_only_share * interior_point_work());
+  const double work_of_try = std::max(min_exchange_work, exchange_share * interior_point_work()),
+               max_work_of_exchange = std::max(min_exchange_work, exchange_only_share * interior_point_work());
   double tried = 0;
   if (options.method != QpMethod::interior_point) {
-    tried = options.max_exchange_work > 0 ? options.max_exchange_work
-            : options.method == QpMethod::exchange
-                ? max_work_of_exchange
-                : std::max(min_exchange_work, exchange_share * interior_point_work());
+    tried = options.max_exchange_work > 0          ? options.max_exchange_work
+            : options.method == QpMethod::exchange ? max_work_of_exchange
+                                                   : work_of_try;
     if (exchange_within(tried)) return outcome;
   } else {
     outcome.result.u = Eigen::VectorXd::Zero(rows.size());
@@ -123,17 +123,20 @@ BoundedQp::Implementation::Outcome BoundedQp::Implementation::solve(const Rows& 
   add_up(so_far, outcome.result);
   seconds_interior = watch.lap();
   if (!outcome.result.stopped) return outcome;
-  // Without a point that satisfies every constraint, the interior point's own would not either.
-  if (rows.constraints().inside_u.size() == 0 && tried < max_work_of_exchange) {
+  outcome.relative_gap = point.relative_gap;
+  // Without a point that satisfies every constraint, the interior point's own would not either, unless it is the
+  // optimum: then an exchange would only tell exactly which constraints hold.
+  const double second_try = point.converged ? work_of_try : max_work_of_exchange;
+  if (!rows.constraints().start_satisfies_rows && tried < second_try) {
     const ExchangeResult before = std::move(outcome.result);
-    if (exchange_within(max_work_of_exchange)) {
+    if (exchange_within(second_try)) {
       add_up(before, outcome.result);
       outcome.method = QpMethod::exchange;
+      outcome.relative_gap = 0;
       return outcome;
     }
     outcome.result = before;
   }
-  outcome.relative_gap = point.relative_gap;
   return outcome;
 }
 

@@ -88,10 +88,11 @@ InteriorPoint::InteriorPoint(const Energy& energy, NewtonMatrix& matrix, const R
 
 void InteriorPoint::begin(const InteriorPointStart& start) {
   const BoundedQpConstraints& c = rows_.constraints();
-  // A point inside needs no travel: its energy is of the size of the answer's, and so are the first multipliers.
-  const bool inside = c.inside_u.size() == n_ && c.inside_m.size() == groups_;
-  u_ = inside ? c.inside_u : start.u;
-  m_ = inside ? c.inside_m : start.m;
+  // A point within the bounds needs no travel: its energy is of the size of the answer's, and so are the first
+  // multipliers.
+  const bool inside = c.start_u.size() == n_ && c.start_m.size() == groups_;
+  u_ = inside ? c.start_u : start.u;
+  m_ = inside ? c.start_m : start.m;
   system_.place_held(u_, m_);
   bounds_.soft.setZero(static_cast<Eigen::Index>(bounds_.key.size()));
   const Eigen::VectorXd softness = order_softness(energy_, rows_);

@@ -23,9 +23,11 @@ struct BoundedQpConstraints {
   int group_count = 1;
   std::vector<InequalityRow> rows;
   Eigen::VectorXd gauge;  // n
-  /// A point that satisfies every constraint (n, group_count), or empty. It is not where the solution starts: an answer
-  /// that has to be given before the optimum is found moves towards it until it satisfies every row.
-  Eigen::VectorXd inside_u, inside_m;
+  /// A point well within the bounds (n, group_count), or empty. The interior point starts there.
+  Eigen::VectorXd start_u, start_m;
+  /// Whether it satisfies the rows, too. An answer that has to be given before the optimum is found then moves towards
+  /// it until it satisfies every row.
+  bool start_satisfies_rows = false;
 };
 
 enum class QpMethod { automatic, exchange, interior_point };

@@ -7,8 +7,8 @@
 
 namespace formwright::bounded_qp_detail {
 
-/// Moves u, m in a straight line towards the point `inside` of the constraints, as little as its order rows ask, and
-/// into the bounds. Nothing moves when no row is violated or no such point is known.
+/// Moves u, m in a straight line towards the starting point of the constraints, as little as its order rows ask, and
+/// into the bounds. Nothing moves when no row is violated or that point violates rows itself.
 void move_inside(const Rows& rows, Eigen::VectorXd& u, Eigen::VectorXd& m);
 
 }  // namespace formwright::bounded_qp_detail

@@ -25,6 +25,7 @@ TEST_CASE("FileNote.AMeshWithANoteIsReadAsWithout") {
   for (const auto& [format, media_type, held] : {std::tuple{MeshFormat::ply, "application/x-ply", note},
                                                  {MeshFormat::obj, "model/obj", note},
                                                  {MeshFormat::glb, "model/gltf-binary", note},
+                                                 {MeshFormat::three_mf, "model/3mf", note},
                                                  {MeshFormat::stl, "model/stl", words}}) {
     INFO(media_type);
     const std::string name = "model." + std::string(mesh_format_info(format).extension);
@@ -52,16 +53,44 @@ TEST_CASE("FileNote.ADrawingsNoteIsEscaped") {
   CHECK(as_text(file).ends_with("</metadata>\n</svg>\n"));
 }
 
+TEST_CASE("FileNote.ADrawingOfLinesHasTheWordsAboveItsFirstSection") {
+  const Bytes file = noted(to_bytes("0\nSECTION\n2\nHEADER\n"), "image/vnd.dxf");
+  CHECK(as_text(file) == "999\nFormwright, job 0123456789abcdef\n0\nSECTION\n2\nHEADER\n");
+}
+
+TEST_CASE("FileNote.ADocumentKeepsItsPropertiesAndGetsASubject") {
+  // As libharu writes: objects, a table of references, a trailer.
+  const std::string objects =
+      "%PDF-1.6\n1 0 obj\n<<\n/Type /Catalog\n>>\nendobj\n2 0 obj\n<<\n/Title (A \\) >> b)\n>>\nendobj\n";
+  const std::string file = objects + "xref\n0 3\n...\ntrailer\n<<\n/Root 1 0 R\n/Info 2 0 R\n/Size 3\n>>\nstartxref\n" +
+                           std::to_string(objects.size()) + "\n%%EOF\n";
+  Bytes with = to_bytes(file);
+  add_note(with, "application/pdf", R"({"a":"(b) \\"})", words);
+  const std::string_view text = as_text(with);
+  REQUIRE(text.starts_with(file));
+  const std::string_view update = text.substr(file.size());
+  CHECK(update.starts_with(
+      "2 0 obj\n<<\n/Title (A \\) >> b)\n/Subject ({\"a\":\"\\(b\\) \\\\\\\\\"})\n>>\nendobj\nxref\n2 1\n"));
+  char entry[32];
+  std::snprintf(entry, sizeof entry, "\n%010zu 00000 n\r\ntrailer", file.size());
+  CHECK(update.find(entry) != std::string_view::npos);
+  CHECK(update.find("/Prev " + std::to_string(objects.size()) + "\n") != std::string_view::npos);
+  const std::size_t table = update.find("xref");
+  CHECK(update.ends_with("startxref\n" + std::to_string(file.size() + table) + "\n%%EOF\n"));
+}
+
 TEST_CASE("FileNote.WhatIsNotAsThisProgramWritesItStays") {
   for (const char* media_type :
-       {"application/x-ply", "model/obj", "model/gltf-binary", "model/stl", "image/png", "image/svg+xml"})
-    for (const std::string& text :
-         {std::string(), std::string("\x89PNG"), std::string("glTF"), std::string(200, 'x')}) {
+       {"application/pdf", "application/x-ply", "application/zip", "image/png", "image/svg+xml", "image/vnd.dxf",
+        "model/3mf", "model/gltf-binary", "model/obj", "model/stl"})
+    for (const std::string& text : {std::string(), std::string("\x89PNG"), std::string("glTF"), std::string(200, 'x'),
+                                    std::string("%PDF-1.6\n"), std::string("%PDF-1.6\nstartxref\n0\n%%EOF\n"),
+                                    std::string("%PDF-1.6\nstartxref\n99999\n%%EOF\n"), std::string("PK\x05\x06")}) {
       INFO(media_type << " " << text);
       CHECK(noted(to_bytes(text), media_type) == to_bytes(text));
     }
-  CHECK_FALSE(takes_note("application/pdf"));
-  CHECK(noted(to_bytes("%PDF"), "application/pdf") == to_bytes("%PDF"));
+  CHECK_FALSE(takes_note("text/plain"));
+  CHECK(noted(to_bytes("words"), "text/plain") == to_bytes("words"));
 }
 
 TEST_CASE("FileNote.AnStlWithoutRoomStays") {

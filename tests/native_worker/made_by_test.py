@@ -10,6 +10,7 @@ import sys
 import tempfile
 import unittest
 import xml.etree.ElementTree
+import zipfile
 
 from PIL import Image
 
@@ -52,6 +53,24 @@ class MadeBy(unittest.TestCase):
             head = (self.folder / name).read_bytes()[:3000].decode(errors="replace").split("\n")
             line = next(line for line in head if line.startswith(mark))
             self.assertEqual(json.loads(line.removeprefix(mark)), record, name)
+
+    def test_archives_and_models_in_them(self):
+        record = self.made("relief", "--sample", "pyramid", "--sample-vertices", 2000, "--width-mm", 50, "--pixel-mm", 1, "--outputs", "relief.3mf")
+        with zipfile.ZipFile(self.folder / "relief.3mf") as archive:
+            self.assertIsNone(archive.testzip())
+            self.assertEqual(json.loads(archive.comment), record)
+        self.made("zippable-design", "--sample", "star", "--outputs", "design.json")
+        record = self.made("zippable-plan", "--design", self.folder / "design.json", "--outputs", "plan.dxf,plan.pdf,sheets.zip")
+        with zipfile.ZipFile(self.folder / "sheets.zip") as archive:
+            self.assertIsNone(archive.testzip())
+            self.assertEqual(json.loads(archive.comment), record)
+        self.assertTrue((self.folder / "plan.dxf").read_text().startswith(f'999\nFormwright, job {record["job"]}\n0\nSECTION\n'))
+        # Poppler reads the properties; with anything wrong in the tables it rebuilds them and says so.
+        read = subprocess.run(["pdfinfo", self.folder / "plan.pdf"], capture_output=True, text=True, check=True)
+        self.assertEqual(read.stderr, "")
+        subject = next(line for line in read.stdout.splitlines() if line.startswith("Subject:"))
+        self.assertEqual(json.loads(subject.removeprefix("Subject:")), record)
+        self.assertRegex(read.stdout, r"Creator: +Formwright")
 
     def test_a_drawing(self):
         drawing = self.folder / "square & circle.svg"

@@ -8,6 +8,7 @@
 
 #include "base/data/xml_text.h"
 #include "formats/shared/byte_order.h"
+#include "formats/shared/pdf_note.h"
 
 namespace formwright {
 namespace {
@@ -76,13 +77,29 @@ void note_stl(Bytes& file, std::string_view words) {
   if (used + words.size() <= head) std::ranges::copy(as_bytes(words), file.begin() + static_cast<std::ptrdiff_t>(used));
 }
 
+/// Group 999 is a comment, which stands before the first section (DXF reference, "Group codes in numerical order").
+void note_dxf(Bytes& file, std::string_view words) {
+  if (as_text(file).starts_with("0\nSECTION\n")) insert(file, 0, "999\nFormwright" + std::string(words) + "\n");
+}
+
+/// APPNOTE 6.3, 4.3.16: the archive's comment follows the last record, whose last number is its length.
+void note_zip(Bytes& file, std::string_view json) {
+  constexpr std::size_t record = 22, length = 20;
+  if (file.size() < record || !as_text(file).substr(file.size() - record).starts_with("PK\x05\x06")) return;
+  store(file.data() + file.size() - record + length, static_cast<std::uint16_t>(json.size()));
+  insert(file, file.size(), json);
+}
+
 struct Place {
   std::string_view media_type;
   void (*put)(Bytes& file, std::string_view note);
   bool brief = false;
 };
-constexpr Place places[] = {{"application/x-ply", note_ply}, {"image/png", note_png}, {"image/svg+xml", note_svg},
-                            {"model/gltf-binary", note_glb}, {"model/obj", note_obj}, {"model/stl", note_stl, true}};
+constexpr Place places[] = {{"application/pdf", note_pdf}, {"application/x-ply", note_ply},
+                            {"application/zip", note_zip}, {"image/png", note_png},
+                            {"image/svg+xml", note_svg},   {"image/vnd.dxf", note_dxf, true},
+                            {"model/3mf", note_zip},       {"model/gltf-binary", note_glb},
+                            {"model/obj", note_obj},       {"model/stl", note_stl, true}};
 
 const Place* place_in(std::string_view media_type) {
   const auto* const found = std::ranges::find(places, media_type, &Place::media_type);

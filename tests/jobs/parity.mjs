@@ -151,8 +151,8 @@ function pdfContent(bytes) {
     .toString('latin1')
     .replace(/\bstream\r?\n([^]*?)\r?\nendstream/g, (_, packed) => `stream ${streams.push(inflated(packed))}`)
     .replace(/\d+ 0 obj\s+\d+\s+endobj/g, 'length')
-    .replace(/xref[^]*?trailer/, 'trailer')
-    .replace(/startxref\s+\d+/, '')
+    .replace(/xref[^]*?trailer/g, 'trailer')
+    .replace(/startxref\s+\d+|\/Prev \d+/g, '')
     .replace(/\/Producer \([^)]*\)/, '');
   return { streams, objects };
 }

@@ -179,7 +179,7 @@ export async function inEveryLook(page: Page, check: (look: string) => Promise<v
   if (before) await page.setViewportSize(before);
 }
 
-/** Fails with what axe finds serious in the page as it is; `what` says on which state of it. */
+/** Fails with what axe finds serious in the page as it is, and where the page itself could scroll; `what` says on which state of it. */
 export async function expectAccessibleNow(page: Page, what: string): Promise<void> {
   const { violations } = await new AxeBuilder({ page }).analyze();
   const serious = violations.filter(({ impact }) => impact === 'serious' || impact === 'critical');
@@ -187,6 +187,8 @@ export async function expectAccessibleNow(page: Page, what: string): Promise<voi
     ({ id, nodes }) => `${what}: ${id}: ${nodes.map(({ html }) => html.slice(0, 120)).join(' | ')}`,
   );
   expect(listed).toEqual([]);
+  const beyond = await page.evaluate(() => document.documentElement.scrollHeight - window.innerHeight);
+  expect(beyond, `${what}: px by which the page is longer than the screen`).toBeLessThanOrEqual(0);
 }
 
 /**

@@ -16,7 +16,7 @@ import { Notes } from './notes';
 import { togglePlay } from './ribbon/play';
 import { ResultsStrip } from './results_strip';
 import type { SendToMachine } from './sheets/send_sheet';
-import { view } from './views';
+import { flatView, view } from './views';
 import { viewpoint, ViewportPanel } from './viewport_panel';
 import './zippable.css';
 import type { ZippableSession } from './zippable_session';
@@ -41,12 +41,14 @@ export function ZippablePage({ session, onChooseFile, onSendToMachine }: Zippabl
     },
   }));
   const { model } = session.document.value;
+  const zipped = view.value === 'ribbon' && flatView.value === 'ribbon' && session.shown.value !== null;
+  const layout = tool.value ? 'drawing' : zipped ? 'zipped' : '';
   const opening = session.activity.value.kind === 'opening';
   const all = session.services.catalog.value?.samples ?? [];
   const samples = zippableSamples.flatMap((name) => all.find((sample) => sample.name === name) ?? []);
   return (
     <>
-      <main class={tool.value ? 'view zippable-view drawing' : 'view zippable-view'} aria-label="Zippable">
+      <main class={`view zippable-view ${layout}`} aria-label="Zippable">
         <h1 class="hidden-text">Zippable</h1>
         <div class="zippable-model">
           <ViewportPanel

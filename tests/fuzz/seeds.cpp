@@ -150,6 +150,13 @@ void add_other_seeds() {
        "\x06"
        R"({"light_direction":[0,0,1],"light_distance_mm":100})");
   save("craft_file", "brightness", "\x07x_mm,y_mm,brightness,sigma\n0,0,1,0.1\n");
+  save(
+      "forest_scene", "two",
+      std::string("\0", 1) +
+          R"({"viewpoints":[{"eye_mm":[0,-600,60],"look_at_mm":[0,0,60],"width_mm":68,"sample":"bust","vertices":2000},{"eye_mm":[600,0,60],"look_at_mm":[0,0,60],"width_mm":90,"model":2,"direction":[0,0,-1],"up":[0,1,0]}],"pillars":[{"shape":"round","x_mm":-20,"y_mm":0,"width_mm":12,"height_mm":120},{"shape":"square","x_mm":10,"y_mm":5,"width_mm":14,"turn_deg":30,"height_mm":90},{"outline_mm":[[40,0],[50,0],[45,9]],"height_mm":100}]})");
+  save("forest_scene", "screens",
+       "\x01"
+       R"({"viewpoints":[{"eye_mm":[0,-600,60],"look_at_mm":[0,0,60],"width_mm":68,"model":1}]})");
   save("png16", "red", test::red_pixel_png());
   save(
       "machine", "grbl",

@@ -114,7 +114,15 @@ Json plan_json(const ForestPlan& plan) {
     for (const Vec2& p : pillar.outline_mm) outline.push_back(place(p));
     pillars.push_back(outline);
   }
-  return {{"viewpoints", views}, {"pillars_mm", pillars}};
+  Json shared = Json::array();
+  for (const SharedWall& wall : plan.walls.shared) {
+    const Outline& outline = plan.scene.pillars[static_cast<std::size_t>(wall.pillar)].outline_mm;
+    const Vec2 &a = corner(outline, wall.edge), &b = corner(outline, wall.edge + 1);
+    shared.push_back({{"pillar", wall.pillar + 1},
+                      {"viewpoints", {wall.views[0] + 1, wall.views[1] + 1}},
+                      {"line_mm", {place(a + wall.from * (b - a)), place(a + wall.to * (b - a))}}});
+  }
+  return {{"viewpoints", views}, {"pillars_mm", pillars}, {"shared", shared}};
 }
 
 Model standing_pillars(const SolvedForest& forest) {

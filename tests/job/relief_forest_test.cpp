@@ -138,8 +138,8 @@ TEST_CASE("ReliefForest.AWrittenSceneGivesTheSamePillars") {
 
 TEST_CASE("ReliefForest.ShapesStayShapesInAWrittenScene") {
   Json json = scene();
-  json["pillars"][0] = Json::parse(
-      R"({"shape": "hexagon", "x_mm": -12, "y_mm": -60, "width_mm": 18, "turn_deg": 10, "height_mm": 80})");
+  json["pillars"][0] =
+      Json::parse(R"({"shape": "hexagon", "x_mm": -12, "y_mm": -60, "width_mm": 18, "turn_deg": 10, "height_mm": 80})");
   const JobResult result = run(with_scene(json), Json::object(), {"scene.json", "plan.json"});
   INFO((result.error ? result.error->message : ""));
   REQUIRE_FALSE(result.error.has_value());
@@ -154,8 +154,8 @@ TEST_CASE("ReliefForest.ThePlanNamesWhatTwoViewpointsSee") {
   Json json = scene();
   // Both look past the others at the right front of a pillar behind them.
   json["pillars"].erase(3);
-  json["pillars"][1] = {
-      {"shape", "square"}, {"x_mm", 15}, {"y_mm", 10}, {"width_mm", 12}, {"turn_deg", 45}, {"height_mm", 80}};
+  json["pillars"][1] = {{"shape", "square"}, {"x_mm", 15},     {"y_mm", 10},
+                        {"width_mm", 12},    {"turn_deg", 45}, {"height_mm", 80}};
   const JobResult result = run(with_scene(json), Json::object(), {"plan.json"});
   INFO((result.error ? result.error->message : ""));
   REQUIRE_FALSE(result.error.has_value());

@@ -94,7 +94,9 @@ Json plan_json(const ForestPlan& plan) {
     };
     // Where rays meet nothing, the area ends beyond what is looked at.
     const double beyond = seen_beyond * view.distance_mm;
-    Json sight = {place(view.eye)}, surfaces = Json::array();
+    // Not in braces: of a single value in braces some compilers make a list and others a copy.
+    Json sight = Json::array(), surfaces = Json::array();
+    sight.push_back(place(view.eye));
     double t = view.from;
     for (const WallStrip& s : plan.strips[v]) {
       if (s.from > t) sight.insert(sight.end(), {place(view.at(t, beyond)), place(view.at(s.from, beyond))});
@@ -103,7 +105,8 @@ Json plan_json(const ForestPlan& plan) {
     }
     if (t < view.to) sight.insert(sight.end(), {place(view.at(t, beyond)), place(view.at(view.to, beyond))});
     for (const WallPiece& piece : plan.walls.pieces[v]) {
-      Json line = {place(on_wall(piece.strips.front(), piece.from()))};
+      Json line = Json::array();
+      line.push_back(place(on_wall(piece.strips.front(), piece.from())));
       for (const WallStrip& s : piece.strips) line.push_back(place(on_wall(s, s.to)));
       surfaces.push_back({{"pillar", piece.pillar + 1}, {"line_mm", line}});
     }

@@ -241,23 +241,30 @@ export function EyeHandle({
   );
 }
 
+/** Several often look at one place: of the chosen viewpoint it is dragged. */
 export function LookHandle({ viewpoint, index, ...shared }: ViewpointProps) {
   const { session, mm } = shared;
   const [x, y] = viewpoint.look_at_mm;
+  const chosen = isChosen(session.chosen.value, 'viewpoint', index);
   return (
     <Handle
       {...shared}
       what={{ kind: 'viewpoint', index }}
       name={`Viewpoint ${index + 1}`}
       label={`${modelName(session, viewpoint)}, looks at ${placeWords([x, y])}`}
-      class={isChosen(session.chosen.value, 'viewpoint', index) ? 'look chosen' : 'look'}
+      class={chosen ? 'look chosen' : 'look'}
       place={[x, y]}
       inTabOrder
       onMove={(to) => moveEnd(shared, index, 'look_at_mm', to)}
       onRemove={removing(shared, index)}
     >
       <circle class="reach" r={16 * mm} />
-      <circle class="target" r={6 * mm} style={{ stroke: colourOf(index) }} stroke-width={3 * mm} />
+      <circle
+        class="target"
+        r={(chosen ? 7 : 4) * mm}
+        style={{ stroke: colourOf(index) }}
+        stroke-width={3 * mm}
+      />
     </Handle>
   );
 }

@@ -39,7 +39,6 @@ export function FloorPlan({ session, scene }: FloorPlanProps) {
   const { svg, mm } = useScale(frame);
   const planned = session.plan.planned.value;
   const stale = !session.plan.fits.value && session.plan.problem.value !== null;
-  const chosen = session.chosen.value;
   const placeAt = (event: PointerEvent): Place => {
     const matrix = svg.current?.getScreenCTM()?.inverse();
     const { x, y } = new DOMPoint(event.clientX, event.clientY).matrixTransform(matrix);
@@ -52,12 +51,6 @@ export function FloorPlan({ session, scene }: FloorPlanProps) {
     placeAt,
     onHold: (hold: boolean) => setHeld(hold ? frame : null),
   };
-  const chosenLast = scene.viewpoints
-    .map((_, v) => v)
-    .sort((a, b) => Number(isViewpoint(a)) - Number(isViewpoint(b)));
-  function isViewpoint(v: number): boolean {
-    return chosen?.kind === 'viewpoint' && chosen.index === v;
-  }
   return (
     <div class={stale ? 'forest-plan stale' : 'forest-plan'}>
       <p id={helpId} class="hidden-text">
@@ -87,14 +80,18 @@ export function FloorPlan({ session, scene }: FloorPlanProps) {
           <PillarHandle key={p} {...handles} pillar={pillar} index={p} />
         ))}
         {planned ? <Surfaces plan={planned.plan} mm={mm} /> : null}
-        {chosenLast.map((v) => (
-          <LookHandle key={v} {...handles} viewpoint={scene.viewpoints[v] as Viewpoint} index={v} />
+        {scene.viewpoints.map((viewpoint, v) => (
+          <LookHandle key={v} {...handles} viewpoint={viewpoint} index={v} />
         ))}
-        {chosenLast.map((v) => {
-          const viewpoint = scene.viewpoints[v] as Viewpoint;
-          const mark = markOf(viewpoint, frame, 18 * mm);
-          return <EyeHandle key={v} {...handles} viewpoint={viewpoint} index={v} mark={mark} />;
-        })}
+        {scene.viewpoints.map((viewpoint, v) => (
+          <EyeHandle
+            key={v}
+            {...handles}
+            viewpoint={viewpoint}
+            index={v}
+            mark={markOf(viewpoint, frame, 18 * mm)}
+          />
+        ))}
       </svg>
     </div>
   );

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The pillar forest in the relief room: its plan from above, the pillars in space, and what is seen of them.
-import { Button, Segmented, Sheet } from '../../../ui';
-import { narrow } from '../../../shared/panels/narrow';
+import { Button, IconButton, Segmented, Sheet } from '../../../ui';
 import { useRoomKeys } from '../../../shared/session/room_keys';
 import '../../../shared/panels/room.css';
 import { FloorPlan } from './floor_plan';
@@ -12,6 +11,7 @@ import { ForestPictures } from './forest_pictures';
 import { ForestSpace } from './forest_space';
 import { ForestStrip } from './forest_strip';
 import type { ForestSession } from './forest_session';
+import { useNarrow } from './use_narrow';
 import { planReach, view } from './views';
 
 export interface ForestPageProps {
@@ -33,12 +33,13 @@ export function ForestPage({ session, onChooseFile }: ForestPageProps) {
       if (main && session.result.value) void saveOutput(session, main);
     },
   }));
+  const isNarrow = useNarrow();
   const scene = session.scene.value;
   const made = session.shown.value;
   const shown = made === null ? 'plan' : view.value;
   const options = views.map(({ value, label, short }) => ({
     value,
-    label: narrow() ? short : label,
+    label: isNarrow ? short : label,
     disabledReason: value !== 'plan' && made === null ? 'Make the forest first' : undefined,
   }));
   return (
@@ -60,12 +61,13 @@ export function ForestPage({ session, onChooseFile }: ForestPageProps) {
             onChange={(value) => (view.value = value)}
           />
           {shown === 'plan' ? (
-            <Button
-              size="small"
+            <IconButton
+              icon="frame"
+              class="outlined"
+              label="Show the floor up to the eyes"
+              pressed={planReach.value === 'eyes'}
               onClick={() => (planReach.value = planReach.value === 'eyes' ? 'pillars' : 'eyes')}
-            >
-              {planReach.value === 'eyes' ? 'Only the pillars' : 'Up to the eyes'}
-            </Button>
+            />
           ) : null}
         </div>
         <div class="float bottom-left foot">

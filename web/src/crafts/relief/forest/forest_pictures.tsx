@@ -7,7 +7,7 @@ import type { ForestResult } from './forest_document';
 import type { ForestSession } from './forest_session';
 import type { ViewFigures } from './plan';
 import { figuresOf } from './plan';
-import { colourOf } from './views';
+import { colourOf, modelName } from './views';
 
 export interface ForestPicturesProps {
   readonly session: ForestSession;
@@ -49,7 +49,11 @@ function usePictures(session: ForestSession, result: ForestResult): readonly Pic
 
 export function ForestPictures({ session, result }: ForestPicturesProps) {
   const pictures = usePictures(session, result);
-  const views = figuresOf(result.report, 'viewpoints');
+  const scene = session.shownScene.value;
+  const views = figuresOf(result.report, 'viewpoints').map((view, v) => {
+    const viewpoint = scene?.viewpoints[v];
+    return viewpoint ? { ...view, model: modelName(session, viewpoint) } : view;
+  });
   return (
     <div class="forest-pictures" tabIndex={0} role="region" aria-label="Pictures and check">
       <ul>
@@ -58,7 +62,7 @@ export function ForestPictures({ session, result }: ForestPicturesProps) {
             <figure>
               <img src={url} alt={words(views[i], i)} />
               <figcaption>
-                {views[i] ? <Number index={i} /> : null}
+                {views[i] ? <Disc index={i} /> : null}
                 {words(views[i], i)}
               </figcaption>
             </figure>
@@ -73,7 +77,7 @@ export function ForestPictures({ session, result }: ForestPicturesProps) {
 const words = (view: ViewFigures | undefined, index: number): string =>
   view ? `From viewpoint ${index + 1}: ${view.model}` : 'From elsewhere';
 
-const Number = ({ index }: { index: number }) => (
+const Disc = ({ index }: { index: number }) => (
   <i class="number-disc" style={{ background: colourOf(index) }} aria-hidden="true">
     {index + 1}
   </i>
@@ -105,7 +109,7 @@ function Shares({ views }: { views: readonly ViewFigures[] }) {
         {views.map(({ model, shares }, v) => (
           <tr key={v}>
             <th scope="row">
-              <Number index={v} /> {model}
+              <Disc index={v} /> {model}
             </th>
             {columns.map(([name]) => (
               <td key={name}>{share(shares[name])}</td>

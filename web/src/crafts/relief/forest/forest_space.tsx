@@ -8,6 +8,7 @@ import type { Viewpoint as Camera, Vec3 } from '../../../view';
 import { Viewport } from '../../../view';
 import type { ForestSession } from './forest_session';
 import type { Scene, Viewpoint } from './scene';
+import { useNarrow } from './use_narrow';
 import { colourOf } from './views';
 
 /** The eye looked from; null: somewhere else. */
@@ -38,18 +39,22 @@ export function ForestSpace({ session }: { session: ForestSession }) {
   const container = useRef<HTMLDivElement>(null);
   const viewport = useSignal<Viewport | null>(null);
   const drawing = useSignal(true);
+  const isNarrow = useNarrow();
   useEffect(() => {
     if (container.current === null) return undefined;
     const made = new Viewport(container.current, {
       mode: 'original',
       freeRectangle: narrow()
-        ? { left: 10, top: 104, right: 10, bottom: 40 }
+        ? { left: 10, top: 124, right: 10, bottom: 20 }
         : { left: 24, top: 108, right: 24, bottom: 40 },
       label: 'The pillars in space',
       partNames: ['Forest', ''],
       uprightTurn: true,
       dimensions: false,
       ground: true,
+      // Shadows of pillars before it would lie on what is looked at.
+      refine: false,
+      light: { azimuthDeg: 135, elevationDeg: 40, follows: 'camera' },
       onViewpointChange: (_, at) => {
         if (!at) eye.value = null;
       },
@@ -84,7 +89,7 @@ export function ForestSpace({ session }: { session: ForestSession }) {
               <i class="number-disc" style={{ background: colourOf(v) }} aria-hidden="true">
                 {v + 1}
               </i>
-              {narrow() ? <span class="hidden-text">From viewpoint {v + 1}</span> : `From viewpoint ${v + 1}`}
+              {isNarrow ? <span class="hidden-text">From viewpoint {v + 1}</span> : `From viewpoint ${v + 1}`}
             </button>
           ))}
           <Button size="small" onClick={() => viewport.value && look(viewport.value, scene, null, true)}>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { useId, useState } from 'preact/hooks';
-import { formatFixed, parseNumber } from '../../../ui';
-import { rounded } from './scene';
+import { parseNumber } from '../../../ui';
+import { placeNumber } from './views';
 
 export interface NumberFieldProps {
   readonly label: string;
@@ -17,9 +17,7 @@ export interface NumberFieldProps {
 export function NumberField({ label, shown, unit, value, integer, onChange }: NumberFieldProps) {
   const id = useId();
   const [draft, setDraft] = useState<string | null>(null);
-  const text = integer
-    ? String(value)
-    : formatFixed(rounded(value), Number.isInteger(rounded(value)) ? 0 : 1);
+  const text = integer ? String(value) : placeNumber(value);
   const take = () => {
     const next = draft === null ? null : parseNumber(draft);
     setDraft(null);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the view of the forest shows, and what its parts are called. Outlives a visit to another page.
 import { signal } from '@preact/signals';
-import { formatNumber } from '../../../ui';
+import { formatFixed } from '../../../ui';
 import type { ForestSession } from './forest_session';
 import type { Chosen, Pillar, Viewpoint } from './scene';
-import { isShaped } from './scene';
+import { isShaped, rounded } from './scene';
 
 export type ForestView = 'plan' | 'space' | 'pictures';
 export const view = signal<ForestView>('plan');
@@ -30,8 +30,11 @@ export const shapeName = (pillar: Pillar): string =>
   isShaped(pillar) ? shapeNames[pillar.shape] : outlineName;
 
 /** "12, −40.5 mm". */
-export const placeWords = ([x, y]: readonly number[]): string =>
-  `${formatNumber(x ?? 0)}, ${formatNumber(y ?? 0)} mm`;
+export const placeWords = ([x, y]: readonly number[]): string => `${placeNumber(x)}, ${placeNumber(y)} mm`;
+
+/** Whole where it is whole. */
+export const placeNumber = (value = 0): string =>
+  formatFixed(rounded(value), Number.isInteger(rounded(value)) ? 0 : 1);
 
 export const isChosen = (chosen: Chosen | null, kind: Chosen['kind'], index: number): boolean =>
   chosen?.kind === kind && chosen.index === index;

@@ -42,7 +42,7 @@ test('four models on one forest: moved, made, looked at and kept', async ({ page
   await expect(page.getByRole('heading', { name: '23 pillars' })).toBeVisible();
   for (const model of ['Bust', 'Octopus', 'Cat', 'Fish'])
     await expect(
-      page.getByRole('button', { name: new RegExp(`^\\d?Viewpoint \\d, ${model}`) }),
+      page.getByRole('button', { name: new RegExp(`^Viewpoint \\d, ${model} \\d+\\s% on pillars`) }),
     ).toBeVisible();
   await makeQuick(page);
   await upToDate(page);
@@ -103,6 +103,7 @@ test('four models on one forest: moved, made, looked at and kept', async ({ page
   await expect(page.getByText('Saved', { exact: true })).toBeVisible();
   await page.reload();
   await expect(strip(page, 'Forest ready')).toBeVisible({ timeout: 120_000 });
+  await page.getByRole('radio', { name: 'From the eyes' }).click();
   await expect(row).toBeVisible();
   await page.getByRole('radio', { name: 'Floor plan' }).click();
   await expect.poll(place).not.toBe(at);

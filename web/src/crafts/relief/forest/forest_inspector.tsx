@@ -11,7 +11,7 @@ import { figure } from '../../../shared/session/report';
 import { readyWorker } from '../../../shared/session/services';
 import type { ForestResult } from './forest_document';
 import type { ForestSession } from './forest_session';
-import { SceneList } from './scene_list';
+import { SceneList } from './list/scene_list';
 import { view } from './views';
 
 export interface ForestInspectorProps {

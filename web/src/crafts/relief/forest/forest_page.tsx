@@ -3,7 +3,7 @@
 import { Button, IconButton, Segmented, Sheet } from '../../../ui';
 import { useRoomKeys } from '../../../shared/session/room_keys';
 import '../../../shared/panels/room.css';
-import { FloorPlan } from './floor_plan';
+import { FloorPlan } from './floor/floor_plan';
 import './forest.css';
 import { ForestInspector, makeForest, saveOutput } from './forest_inspector';
 import { ForestNotes } from './forest_notes';

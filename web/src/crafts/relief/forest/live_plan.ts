@@ -7,8 +7,9 @@ import { LatestOnly } from '../../../jobs/latest_only';
 import { jsonEqual } from '../../../project/document';
 import { bytesOf } from '../../../shared/session/import_model';
 import type { Companion } from '../../../shared/session/craft_document';
+import type { RoomSession } from '../../../shared/session/room_session';
+import type { ForestDocument } from './forest_document';
 import { forestOperation, sameScene, subjectOf } from './forest_document';
-import type { ForestSession } from './forest_session';
 import type { Plan } from './plan';
 import { readPlan } from './plan';
 import type { Scene } from './scene';
@@ -36,14 +37,14 @@ export class LivePlan {
   readonly running = signal(false);
   /** Why there is none of the scene as it stands. */
   readonly problem = signal<string | null>(null);
-  readonly #room: ForestSession;
+  readonly #room: RoomSession<ForestDocument>;
   readonly #latest = new LatestOnly<PlanRequest>(
     (request, abort) => this.#run(request, abort),
     () => false,
     sameRequest,
   );
 
-  constructor(room: ForestSession) {
+  constructor(room: RoomSession<ForestDocument>) {
     this.#room = room;
   }
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One pillar in numbers.
 import { useId } from 'preact/hooks';
-import { IconButton } from '../../../ui';
-import type { ForestSession } from './forest_session';
+import { IconButton } from '../../../../ui';
+import type { ForestSession } from '../forest_session';
 import { NumberField } from './number_field';
-import type { Pillar, Shape } from './scene';
+import type { Pillar, Shape } from '../scene';
 import {
   addPillar,
   changePillar,
@@ -16,8 +16,8 @@ import {
   shapes,
   widenedPillar,
   widthOf,
-} from './scene';
-import { outlineName, shapeNames } from './views';
+} from '../scene';
+import { outlineName, shapeNames } from '../views';
 
 export interface PillarFieldsProps {
   readonly session: ForestSession;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { expect, it } from 'vitest';
 import { frameOf, markOf } from './floor_frame';
-import type { Viewpoint } from './scene';
+import type { Viewpoint } from '../scene';
 
 const viewpoint: Viewpoint = { eye_mm: [0, -600, 60], look_at_mm: [0, 0, 60], width_mm: 70 };
 const pillars = [

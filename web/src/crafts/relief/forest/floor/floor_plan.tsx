@@ -3,11 +3,11 @@
 import { useEffect, useRef, useState } from 'preact/hooks';
 import type { Frame } from './floor_frame';
 import { frameOf, markOf } from './floor_frame';
-import { EyeHandle, LookHandle, PillarHandle } from './floor_handles';
-import type { ForestSession } from './forest_session';
-import type { Plan } from './plan';
-import type { Place, Scene, Viewpoint } from './scene';
-import { colourOf, planReach } from './views';
+import { EyeHandle, helpId, LookHandle, PillarHandle } from './floor_handles';
+import type { ForestSession } from '../forest_session';
+import type { Plan } from '../plan';
+import type { Place, Scene, Viewpoint } from '../scene';
+import { colourOf, planReach } from '../views';
 
 export interface FloorPlanProps {
   readonly session: ForestSession;
@@ -29,8 +29,6 @@ function useScale(frame: Frame) {
   }, []);
   return { svg, mm: Math.max(frame.width / size[0], frame.height / size[1]) };
 }
-
-export const helpId = 'forest-plan-help';
 
 export function FloorPlan({ session, scene }: FloorPlanProps) {
   const [held, setHeld] = useState<Frame | null>(null);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The part of the floor that is drawn, and where an eye beyond it is marked. Drawings have y downwards.
-import type { Place, Scene, Viewpoint } from './scene';
-import { isShaped, placeOf, widthOf } from './scene';
+import type { Place, Scene, Viewpoint } from '../scene';
+import { isShaped, placeOf, widthOf } from '../scene';
 
 export interface Frame {
   readonly left: number;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { useId, useState } from 'preact/hooks';
-import { parseNumber } from '../../../ui';
-import { placeNumber } from './views';
+import { parseNumber } from '../../../../ui';
+import { placeNumber } from '../views';
 
 export interface NumberFieldProps {
   readonly label: string;

@@ -3,9 +3,8 @@
 import type { ComponentChildren } from 'preact';
 import { useRef } from 'preact/hooks';
 import type { EyeMark } from './floor_frame';
-import { helpId } from './floor_plan';
-import type { ForestSession } from './forest_session';
-import type { Chosen, End, Pillar, Place, Scene, Viewpoint } from './scene';
+import type { ForestSession } from '../forest_session';
+import type { Chosen, End, Pillar, Place, Scene, Viewpoint } from '../scene';
 import {
   changePillar,
   changeViewpoint,
@@ -17,8 +16,11 @@ import {
   removeViewpoint,
   turnedTo,
   widthOf,
-} from './scene';
-import { colourOf, isChosen, modelName, placeWords, shapeName } from './views';
+} from '../scene';
+import { colourOf, isChosen, modelName, placeWords, shapeName } from '../views';
+
+/** What is said of how they are moved. */
+export const helpId = 'forest-plan-help';
 
 interface Shared {
   readonly session: ForestSession;

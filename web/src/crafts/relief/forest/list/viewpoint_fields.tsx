@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One viewpoint in numbers: where its eye is, what it looks at, and the model that it shows there.
 import { useId } from 'preact/hooks';
-import { Button, IconButton } from '../../../ui';
-import { VectorField } from '../../../shared/panels/parameters/vector_field';
-import { titleOf } from '../../../shared/session/craft_document';
-import type { ForestSession } from './forest_session';
+import { Button, IconButton } from '../../../../ui';
+import { VectorField } from '../../../../shared/panels/parameters/vector_field';
+import { titleOf } from '../../../../shared/session/craft_document';
+import type { ForestSession } from '../forest_session';
 import { NumberField } from './number_field';
-import type { End, Place3, Viewpoint } from './scene';
-import { addViewpoint, changeViewpoint, removeViewpoint } from './scene';
+import type { End, Place3, Viewpoint } from '../scene';
+import { addViewpoint, changeViewpoint, removeViewpoint } from '../scene';
 
 export interface ViewpointFieldsProps {
   readonly session: ForestSession;

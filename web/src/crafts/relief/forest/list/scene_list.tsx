@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The list beside the plan: viewpoints with what they see of their models, pillars, and the chosen one in numbers.
 import { useId } from 'preact/hooks';
-import { Button, formatFixed, withUnit } from '../../../ui';
-import type { ForestSession } from './forest_session';
+import { Button, formatFixed, withUnit } from '../../../../ui';
+import type { ForestSession } from '../forest_session';
 import { PillarFields } from './pillar_fields';
-import { figuresOf } from './plan';
-import type { Scene } from './scene';
-import { addPillar, addViewpoint } from './scene';
+import { figuresOf } from '../plan';
+import type { Scene } from '../scene';
+import { addPillar, addViewpoint } from '../scene';
 import { ViewpointFields } from './viewpoint_fields';
-import { colourOf, isChosen, modelName, shapeName } from './views';
+import { colourOf, isChosen, modelName, shapeName } from '../views';
 
 export interface SceneListProps {
   readonly session: ForestSession;

@@ -2,7 +2,7 @@
 // Several models on free-standing pillars, each seen from its own viewpoint.
 import type { Page } from '@playwright/test';
 import { readFileSync } from 'node:fs';
-import { expect, expectAccessible, goToRoom, openPage, strip, test } from './page';
+import { ballObj, expect, expectAccessible, fileOf, goToRoom, openPage, strip, test } from './page';
 
 const plan = (page: Page) => page.getByRole('group', { name: 'Floor plan from above' });
 const pillar = (page: Page, number: number) =>
@@ -136,6 +136,18 @@ test('viewpoints and pillars are added, changed in numbers and taken away', asyn
   await page.getByRole('button', { name: 'Delete viewpoint 5' }).click();
   await expect(eye(page, 5)).toBeHidden();
   await upToDate(page);
+
+  // A model of one's own takes the place of the chosen viewpoint's.
+  await eye(page, 2).click();
+  await page.getByLabel('Model or project file').setInputFiles(fileOf('ball.obj', ballObj()));
+  await expect(eye(page, 2)).toHaveAccessibleName(/^Viewpoint 2, ball, /);
+  await expect(page.getByRole('button', { name: /^Viewpoint 2, ball \d+\s% on pillars/ })).toBeVisible();
+  await upToDate(page);
+  // A file that is no scene is refused by the core, and what is open stays.
+  await page.getByLabel('Scene file').setInputFiles(fileOf('garden.json', '{"trees": 3}'));
+  await expect(page.getByText('“trees”').or(page.getByText('"trees"')).first()).toBeVisible();
+  await page.getByRole('button', { name: 'Hide this note' }).click();
+  await expect(eye(page, 2)).toHaveAccessibleName(/ball/);
 
   // Another layout makes other pillars, and is set by hand from there.
   await page.getByRole('combobox', { name: 'Pillars', exact: true }).selectOption('Grid');

@@ -30,7 +30,7 @@ export interface ShapedPillar {
   readonly turn_deg?: number;
   readonly height_mm: number;
 }
-export interface OutlinedPillar {
+interface OutlinedPillar {
   readonly outline_mm: readonly Place[];
   readonly height_mm: number;
 }

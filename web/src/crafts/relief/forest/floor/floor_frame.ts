@@ -14,7 +14,7 @@ export interface Frame {
 const step_mm = 40;
 const margin_mm = 24;
 /** Of the distance to the eye, by which the picture of a single pillar is not a close-up. */
-const least_mm = 160;
+const min_size_mm = 160;
 
 /** Around pillars and what is looked at; with `eyes`, around these, too. */
 export function frameOf({ viewpoints, pillars }: Scene, eyes: boolean): Frame {
@@ -33,7 +33,7 @@ export function frameOf({ viewpoints, pillars }: Scene, eyes: boolean): Frame {
     const all = places.map((place) => place[k]);
     const low = Math.floor((Math.min(...all) - margin_mm) / step_mm) * step_mm;
     const high = Math.ceil((Math.max(...all) + margin_mm) / step_mm) * step_mm;
-    const more = Math.max(0, least_mm - (high - low)) / 2;
+    const more = Math.max(0, min_size_mm - (high - low)) / 2;
     return [low - more, high + more];
   };
   const [x, y] = [span(0), span(1)];

@@ -52,9 +52,8 @@ export function ForestSpace({ session }: { session: ForestSession }) {
       uprightTurn: true,
       dimensions: false,
       ground: true,
-      // Shadows of pillars before it would lie on what is looked at.
-      refine: false,
-      light: { azimuthDeg: 135, elevationDeg: 40, follows: 'camera' },
+      // From near the viewer: shadows of pillars before it would lie on what is looked at.
+      light: { azimuthDeg: 135, elevationDeg: 72, follows: 'camera' },
       onViewpointChange: (_, at) => {
         if (!at) eye.value = null;
       },

@@ -13,7 +13,7 @@ export interface Frame {
 /** It grows by steps, so that what is dragged does not move the rest with it. */
 const step_mm = 40;
 const margin_mm = 24;
-/** Of the distance to the eye, by which the picture of a single pillar is not a close-up. */
+/** So that the floor around a single pillar is seen, too. */
 const min_size_mm = 160;
 
 /** Around pillars and what is looked at; with `eyes`, around these, too. */

@@ -27,6 +27,7 @@ export function SceneList({ session, scene, onChooseFile }: SceneListProps) {
         <h3>Viewpoints</h3>
         <Viewpoints session={session} scene={scene} />
         <Button
+          class="scene-add"
           size="small"
           icon="plus"
           onClick={() => {
@@ -50,6 +51,7 @@ export function SceneList({ session, scene, onChooseFile }: SceneListProps) {
         <h3>{pillars.length} pillars</h3>
         <PillarChoice session={session} scene={scene} />
         <Button
+          class="scene-add"
           size="small"
           icon="plus"
           onClick={() => {
@@ -111,7 +113,7 @@ function PillarChoice({ session, scene }: { session: ForestSession; scene: Scene
             currentTarget.value === '' ? null : { kind: 'pillar', index: Number(currentTarget.value) })
         }
       >
-        <option value="">Choose in the plan or here</option>
+        <option value="">Choose one</option>
         {scene.pillars.map((pillar, p) => (
           <option key={p} value={String(p)}>
             {p + 1}, {shapeName(pillar).toLowerCase()}

@@ -136,6 +136,36 @@ TEST_CASE("ReliefForest.AWrittenSceneGivesTheSamePillars") {
   CHECK((output(first, "scene.json") != output(other, "scene.json")));
 }
 
+TEST_CASE("ReliefForest.ShapesStayShapesInAWrittenScene") {
+  Json json = scene();
+  json["pillars"][0] =
+      Json::parse(R"({"shape": "hexagon", "x_mm": -12, "y_mm": -60, "width_mm": 18, "turn_deg": 10, "height_mm": 80})");
+  const JobResult result = run(with_scene(json), Json::object(), {"scene.json", "plan.json"});
+  INFO((result.error ? result.error->message : ""));
+  REQUIRE_FALSE(result.error.has_value());
+  const Json written = Json::parse(text_of(output(result, "scene.json")));
+  CHECK(written["pillars"] == json["pillars"]);
+  CHECK(Json::parse(text_of(output(result, "plan.json")))["pillars_mm"][0].size() == 6);
+  json["pillars"][0]["shape"] = "octagon";
+  is_refused(json, "Pillar 1 of the scene has shape that is not round, square or hexagon");
+}
+
+TEST_CASE("ReliefForest.ThePlanNamesWhatTwoViewpointsSee") {
+  Json json = scene();
+  // Both look past the others at the right front of a pillar behind them.
+  json["pillars"].erase(3);
+  json["pillars"][1] = {{"shape", "square"}, {"x_mm", 15},     {"y_mm", 10},
+                        {"width_mm", 12},    {"turn_deg", 45}, {"height_mm", 80}};
+  const JobResult result = run(with_scene(json), Json::object(), {"plan.json"});
+  INFO((result.error ? result.error->message : ""));
+  REQUIRE_FALSE(result.error.has_value());
+  CHECK(result.report["seconds_solve"] == 0);
+  const Json plan = Json::parse(text_of(output(result, "plan.json")));
+  REQUIRE(plan["shared"].size() == 1);
+  CHECK(plan["shared"][0]["pillar"] == 2);
+  CHECK(plan["shared"][0]["viewpoints"] == Json{1, 2});
+}
+
 TEST_CASE("ReliefForest.ModelsFromFiles") {
   Context context;
   Model model;
@@ -189,7 +219,7 @@ TEST_CASE("ReliefForest.BadScenesAreRefusedBySentence") {
   is_refused(json, "Pillar 3 of the scene has outline_mm");
   json = scene();
   json["pillars"][0]["shape"] = "oval";
-  is_refused(json, "Pillar 1 of the scene has shape that is not round or square");
+  is_refused(json, "Pillar 1 of the scene has shape that is not round, square or hexagon");
   json = scene();
   json["pillars"][0]["width_mm"] = "wide";
   is_refused(json, "Pillar 1 of the scene has width_mm that is not a number");

@@ -32,6 +32,7 @@ async function start(root: HTMLElement): Promise<void> {
     machines,
   };
   effect(() => resumePending(sessions.relief));
+  effect(() => resumePending(sessions.relief.forest));
   effect(() => resumePending(sessions.thermoform));
   effect(() => resumePending(sessions.zippable));
   effect(() => resumePending(sessions.machines));

@@ -47,6 +47,20 @@ TEST_CASE("WallPieces.SharedPlacesStayBare") {
   CHECK_THAT(walls.used_share[0], WithinAbs(12 / 90.0 / 0.4, 1e-6));
 }
 
+TEST_CASE("WallPieces.WhatTwoSeeIsNamedWhoeverGetsIt") {
+  for (const SharedWalls rule : {SharedWalls::bare, SharedWalls::squarest}) {
+    const Plan plan = two_views();
+    const WallAssignment walls = plan.assigned(rule);
+    REQUIRE(walls.shared.size() == 1);
+    const SharedWall& wall = walls.shared[0];
+    const Vec2 &a = corner(plan.pillars[0].outline_mm, wall.edge),
+               &b = corner(plan.pillars[0].outline_mm, wall.edge + 1);
+    CHECK((a + wall.from * (b - a) - Vec2(2, 90)).norm() < 1e-5);
+    CHECK((a + wall.to * (b - a) - Vec2(10, 90)).norm() < 1e-5);
+    CHECK((wall.views[0] == 0 && wall.views[1] == 1));
+  }
+}
+
 TEST_CASE("WallPieces.TheSquarestViewGetsThem") {
   const WallAssignment walls = two_views().assigned(SharedWalls::squarest);
   CHECK_THAT(front_right_end(walls), WithinAbs(10, 1e-5));

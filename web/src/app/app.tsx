@@ -145,7 +145,9 @@ export function App({ services, sessions }: AppProps) {
   const session = isRoom(where) ? sessions[where] : null;
   const hasInspector = session !== null && session.hasWork.value;
   const hasStrip = hasInspector || session?.activity.value.kind === 'opening';
-  const solving = Object.values(sessions).some(({ activity }) => activity.value.kind === 'solving');
+  const solving = [...Object.values(sessions), sessions.relief.forest].some(
+    ({ activity }) => activity.value.kind === 'solving',
+  );
   return (
     <div class={`app ${hasInspector ? 'with-side' : ''} ${hasStrip ? 'with-strip' : ''}`}>
       <TopBar

@@ -27,6 +27,7 @@ export const roomOf = (place: Place): Room => (isRoom(place) ? place : 'relief')
 
 /** The first room that a project has something in. */
 export function placeOfWork({ crafts }: ProjectDocument): Room | null {
+  if (isObject(crafts['forest']) && !isObject(crafts['relief'])) return 'relief'; // a view of that room
   const hasWork = (room: Room) => {
     const craft = crafts[room];
     if (!isObject(craft)) return false;

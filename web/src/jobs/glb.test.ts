@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { describe, expect, it } from 'vitest';
-import { parseFilm, parsePrinted } from './glb';
+import { parseFilm, parsePrinted, parseSolid } from './glb';
 
 /** Packs accessors and images as the core does: one buffer, one view each. */
 class Writer {
@@ -88,6 +88,22 @@ describe('a film of a sheet', () => {
     expect(() => parseFilm(new Uint8Array(40))).toThrow('has no header');
     expect(() => parseFilm(filmFile([0, 1]).slice(0, -8))).toThrow('ends within its data');
   });
+});
+
+it('a solid stands where its node puts it, in millimetres with z up', () => {
+  const glb = new Writer();
+  const attributes = { POSITION: glb.array(Float32Array.of(10, 20, 30), 'VEC3', 3) };
+  const indices = glb.array(Uint16Array.of(0, 0, 0), 'SCALAR', 1);
+  const solid = parseSolid(
+    glb.file({
+      scene: 0,
+      scenes: [{ nodes: [0] }],
+      nodes: [{ mesh: 0, scale: [0.001, 0.001, 0.001] }],
+      meshes: [{ primitives: [{ attributes, indices }] }],
+    }),
+  );
+  [10, -30, 20].forEach((value, i) => expect(solid.positions[i]).toBeCloseTo(value, 3));
+  expect([...solid.indices]).toEqual([0, 0, 0]);
 });
 
 describe('a printed sheet', () => {

@@ -16,10 +16,13 @@ export interface Film {
   readonly touching_share: readonly number[];
 }
 
-/** A mesh with its picture. */
-export interface Printed {
+export interface Solid {
   readonly positions: Float32Array<ArrayBuffer>;
   readonly indices: Uint32Array<ArrayBuffer>;
+}
+
+/** A mesh with its picture. */
+export interface Printed extends Solid {
   /** u, v per vertex, origin at the picture's lower left. */
   readonly uvs: Float32Array<ArrayBuffer>;
   readonly picture: Uint8Array<ArrayBuffer>;
@@ -162,10 +165,7 @@ function worldMatrix(glb: Glb, mesh: number): Matrix {
   return identity;
 }
 
-/** The first mesh with its base colour picture. Throws Error with one sentence. */
-export function parsePrinted(bytes: Uint8Array<ArrayBuffer>): Printed {
-  const glb = new Glb(bytes);
-  const primitive = object(list(glb.at('meshes', 0)['primitives'])[0]);
+function solidOf(glb: Glb, primitive: JsonObject): Solid {
   const attributes = object(primitive['attributes']);
   const m = worldMatrix(glb, 0);
   const from = glb.floats(attributes['POSITION']);
@@ -178,13 +178,28 @@ export function parsePrinted(bytes: Uint8Array<ArrayBuffer>): Printed {
     positions[i + 1] = -1000 * metres(2);
     positions[i + 2] = 1000 * metres(1);
   }
+  return { positions, indices: glb.integers(primitive['indices']) };
+}
+
+const firstPrimitive = (glb: Glb): JsonObject => object(list(glb.at('meshes', 0)['primitives'])[0]);
+
+/** The first mesh where it stands. Throws Error with one sentence for what has none. */
+export function parseSolid(bytes: Uint8Array<ArrayBuffer>): Solid {
+  const glb = new Glb(bytes);
+  return solidOf(glb, firstPrimitive(glb));
+}
+
+/** The first mesh with its base colour picture. Throws Error with one sentence. */
+export function parsePrinted(bytes: Uint8Array<ArrayBuffer>): Printed {
+  const glb = new Glb(bytes);
+  const primitive = firstPrimitive(glb);
+  const attributes = object(primitive['attributes']);
   const uvs = glb.floats(attributes['TEXCOORD_0']).map((value, i) => (i % 2 === 0 ? value : 1 - value));
   const material = object(glb.at('materials', primitive['material'])['pbrMetallicRoughness']);
   const texture = glb.at('textures', object(material['baseColorTexture'])['index']);
   const image = glb.at('images', texture['source']);
   return {
-    positions,
-    indices: glb.integers(primitive['indices']),
+    ...solidOf(glb, primitive),
     uvs,
     picture: glb.view(image['bufferView']).slice(),
     media_type: String(image['mimeType'] ?? 'image/png'),

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The page's side of `mesh_worker`: meshes without a long task on the main thread.
 import { JobError } from './contract';
-import type { Film, Printed } from './glb';
+import type { Film, Printed, Solid } from './glb';
 import type { PlyMesh } from './ply';
 
 interface Kinds {
   ply: PlyMesh;
   film: Film;
   printed: Printed;
+  solid: Solid;
   polylines: Float32Array<ArrayBuffer>[];
 }
 
@@ -47,4 +48,5 @@ async function read<K extends keyof Kinds>(kind: K, bytes: Uint8Array<ArrayBuffe
 export const readPly = (bytes: Uint8Array<ArrayBuffer>) => read('ply', bytes);
 export const readFilm = (bytes: Uint8Array<ArrayBuffer>) => read('film', bytes);
 export const readPrinted = (bytes: Uint8Array<ArrayBuffer>) => read('printed', bytes);
+export const readSolid = (bytes: Uint8Array<ArrayBuffer>) => read('solid', bytes);
 export const readPolylines = (bytes: Uint8Array<ArrayBuffer>) => read('polylines', bytes);

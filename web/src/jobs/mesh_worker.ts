@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Reads meshes off the main thread.
-import { parseFilm, parsePrinted } from './glb';
+import { parseFilm, parsePrinted, parseSolid } from './glb';
 import type { MeshReply, MeshRequest } from './mesh_reader';
 import { parsePly } from './ply';
 import { parsePolylines } from './polylines';
 
-const readers = { ply: parsePly, film: parseFilm, printed: parsePrinted, polylines: parsePolylines } as const;
+const readers = {
+  ply: parsePly,
+  film: parseFilm,
+  printed: parsePrinted,
+  solid: parseSolid,
+  polylines: parsePolylines,
+} as const;
 
 /** The memory of all typed arrays in a value, to be handed over rather than copied. */
 function buffersOf(value: unknown, found = new Set<ArrayBuffer>()): Set<ArrayBuffer> {

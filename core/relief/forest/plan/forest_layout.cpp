@@ -13,16 +13,22 @@
 namespace formwright {
 namespace {
 
-constexpr int round_corners = 48, tries_a_pillar = 400, tries_a_layout = 60;
+constexpr int tries_a_pillar = 400, tries_a_layout = 60;
 constexpr double overlap_share = 0.08;  // of a column: by so much its pillar is wider on each side
 
+/// To numbers that a maker can read, and that are the same on every machine.
+double rounded(double value) {
+  constexpr double steps = 1000;
+  return std::round(steps * value) / steps;
+}
+
 /// Of a width from side to side, as seen by whom `turn_deg` faces.
-Outline outline_of(PillarShape shape, const Vec2& centre, double width_mm, double turn_deg) {
-  switch (shape) {
-    case PillarShape::square: return square_outline(centre, width_mm, turn_deg);
-    case PillarShape::hexagon: return round_outline(centre, width_mm, 6, turn_deg);
-    default: return round_outline(centre, width_mm, round_corners);
-  }
+Pillar pillar_at(PillarShape shape, const Vec2& centre, double width_mm, double turn_deg, double height_mm) {
+  PillarForm form{PillarForm::Shape::round, {rounded(centre.x()), rounded(centre.y())}, rounded(width_mm), 0};
+  if (shape == PillarShape::square) form.shape = PillarForm::Shape::square;
+  if (shape == PillarShape::hexagon) form.shape = PillarForm::Shape::hexagon;
+  if (form.shape != PillarForm::Shape::round) form.turn_deg = rounded(turn_deg);
+  return pillar_of(form, height_mm);
 }
 
 PillarShape shape_of(PillarShape shape, std::size_t index) {
@@ -71,11 +77,11 @@ bool add_screen(std::size_t own, std::span<const PlanView> views, double outer_m
       const double b = random.uniform(near_mm, far_mm), t = view.from + range * (k + 0.5) / columns;
       const PillarShape shape = shape_of(kind.shape, pillars.size());
       const double width = range / columns * (1 + 2 * overlap_share) * b;
-      const Outline outline = outline_of(shape, view.at(t, b), width, turn_deg);
-      placed = has_room(outline, pillars, kind.gap_mm);
+      const Pillar pillar = pillar_at(shape, view.at(t, b), width, turn_deg, kind.height_mm);
+      placed = has_room(pillar.outline_mm, pillars, kind.gap_mm);
       for (std::size_t v = 0; v < views.size() && placed; ++v)
-        placed = v == own || !is_in_rays(outline, views[v], inner_mm, kind.gap_mm);
-      if (placed) pillars.push_back({outline, kind.height_mm});
+        placed = v == own || !is_in_rays(pillar.outline_mm, views[v], inner_mm, kind.gap_mm);
+      if (placed) pillars.push_back(pillar);
     }
     if (!placed) return false;
   }
@@ -99,12 +105,13 @@ std::vector<Pillar> grid_of_pillars(const FloorArea& area, int columns, int rows
     for (int column = 0; column < columns; ++column) {
       const double x = place(area.width_mm, column, columns), y = place(area.depth_mm, row, rows);
       const Vec2 centre = area.centre + Vec2(c * x - s * y, s * x + c * y);
-      const Outline outline = outline_of(shape_of(kind.shape, pillars.size()), centre, kind.width_mm, turn_deg);
-      if (!has_room(outline, pillars, kind.gap_mm))
+      const Pillar pillar =
+          pillar_at(shape_of(kind.shape, pillars.size()), centre, kind.width_mm, turn_deg, kind.height_mm);
+      if (!has_room(pillar.outline_mm, pillars, kind.gap_mm))
         throw Error(ErrorCode::invalid_input, "pillar_width_mm",
                     "Pillars of the grid would stand closer than " + with_digits(kind.gap_mm, 3) +
                         " mm: make them narrower, fewer, or the area larger.");
-      pillars.push_back({outline, kind.height_mm});
+      pillars.push_back(pillar);
     }
   return pillars;
 }
@@ -117,9 +124,10 @@ std::vector<Pillar> random_pillars(const FloorArea& area, int count, const Pilla
     for (int attempt = 0; attempt < tries_a_pillar && !placed; ++attempt) {
       const double x = random.uniform(-0.5, 0.5), y = random.uniform(-0.5, 0.5), turn_deg = random.uniform(0, 90);
       const Vec2 centre = area.centre + Vec2(x * area.width_mm, y * area.depth_mm);
-      const Outline outline = outline_of(shape_of(kind.shape, pillars.size()), centre, kind.width_mm, turn_deg);
-      placed = has_room(outline, pillars, kind.gap_mm);
-      if (placed) pillars.push_back({outline, kind.height_mm});
+      const Pillar pillar =
+          pillar_at(shape_of(kind.shape, pillars.size()), centre, kind.width_mm, turn_deg, kind.height_mm);
+      placed = has_room(pillar.outline_mm, pillars, kind.gap_mm);
+      if (placed) pillars.push_back(pillar);
     }
     if (!placed)
       throw Error(ErrorCode::invalid_input, "pillar_count",

@@ -12,6 +12,10 @@ namespace formwright {
 namespace {
 
 constexpr double radians_a_degree = std::numbers::pi / 180;
+constexpr int round_corners = 48;
+constexpr std::pair<PillarForm::Shape, std::string_view> shape_names[] = {{PillarForm::Shape::round, "round"},
+                                                                          {PillarForm::Shape::square, "square"},
+                                                                          {PillarForm::Shape::hexagon, "hexagon"}};
 
 /// Rounded, so that the last digit of a machine's sine does not decide what a ray meets.
 Vec2 rounded_place(const Vec2& p) {
@@ -49,6 +53,28 @@ Outline round_outline(const Vec2& centre, double diameter_mm, int corners, doubl
 Outline square_outline(const Vec2& centre, double side_mm, double turn_deg) {
   return regular_outline(centre, side_mm * std::numbers::sqrt2 / 2, 4, turn_deg - 135);
 }
+
+std::string_view name_of(PillarForm::Shape shape) {
+  for (const auto& [known, name] : shape_names)
+    if (known == shape) return name;
+  return {};
+}
+
+std::optional<PillarForm::Shape> shape_called(std::string_view name) {
+  for (const auto& [shape, known] : shape_names)
+    if (known == name) return shape;
+  return std::nullopt;
+}
+
+Outline outline_of(const PillarForm& form) {
+  switch (form.shape) {
+    case PillarForm::Shape::square: return square_outline(form.centre, form.width_mm, form.turn_deg);
+    case PillarForm::Shape::hexagon: return round_outline(form.centre, form.width_mm, 6, form.turn_deg);
+    default: return round_outline(form.centre, form.width_mm, round_corners);
+  }
+}
+
+Pillar pillar_of(const PillarForm& form, double height_mm) { return {outline_of(form), height_mm, form}; }
 
 const Vec2& corner(const Outline& outline, int k) {
   const auto at = static_cast<std::size_t>(k);

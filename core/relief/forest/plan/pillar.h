@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 // Free-standing pillars: upright prisms over outlines in the floor plan.
+#include <optional>
+#include <string_view>
 #include <vector>
 
 #include "geometry/mesh/triangle_mesh.h"
@@ -10,10 +12,26 @@ namespace formwright {
 /// Corners in the floor plan, mm, counter-clockwise, the last joined to the first. Edge k goes from corner k to k + 1.
 using Outline = std::vector<Vec2>;
 
+/// A shape with a name: what a maker edits in the place of corners.
+struct PillarForm {
+  enum class Shape { round, square, hexagon };
+  Shape shape = Shape::round;
+  Vec2 centre{0, 0};
+  double width_mm = 0;  // diameter of the round one and around the hexagon's corners; side of the square
+  double turn_deg = 0;  // counter-clockwise; at 0 a square's sides lie along x and y, and a hexagon has a corner on x
+};
+std::string_view name_of(PillarForm::Shape shape);
+std::optional<PillarForm::Shape> shape_called(std::string_view name);
+/// A round one has 48 corners, which do not turn.
+Outline outline_of(const PillarForm& form);
+
 struct Pillar {
   Outline outline_mm;
-  double height_mm = 0;  // from the floor, z = 0
+  double height_mm = 0;                           // from the floor, z = 0
+  std::optional<PillarForm> form = std::nullopt;  // what the outline was made of
 };
+/// Of a shape with a name.
+Pillar pillar_of(const PillarForm& form, double height_mm);
 
 /// A polygon with `corners` corners on a circle, the first `turn_deg` from x towards y.
 Outline round_outline(const Vec2& centre, double diameter_mm, int corners, double turn_deg = 0);

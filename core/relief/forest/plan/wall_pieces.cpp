@@ -85,6 +85,19 @@ std::vector<WallPiece> joined_to_pieces(const std::vector<WallStrip>& strips, co
   return pieces;
 }
 
+using Claims = std::map<std::pair<int, int>, std::vector<Claim>>;  // by pillar and edge
+
+std::vector<SharedWall> shared_walls(const Claims& claims) {
+  std::vector<SharedWall> shared;
+  for (const auto& [wall, all] : claims)
+    for (const Claim& a : all)
+      for (const Claim& b : all) {
+        const double from = std::max(a.from, b.from), to = std::min(a.to, b.to);
+        if (a.view < b.view && from < to) shared.push_back({wall.first, wall.second, from, to, {a.view, b.view}});
+      }
+  return shared;
+}
+
 }  // namespace
 
 const WallStrip& WallPiece::strip_at(double t) const {
@@ -96,7 +109,7 @@ const WallStrip& WallPiece::strip_at(double t) const {
 WallAssignment assign_walls(std::span<const PlanView> views, std::span<const Pillar> pillars,
                             const std::vector<std::vector<WallStrip>>& strips, SharedWalls shared,
                             double min_width_mm) {
-  std::map<std::pair<int, int>, std::vector<Claim>> claims;  // by pillar and edge
+  Claims claims;
   const auto claim_of = [&](std::size_t v, const WallStrip& s) {
     const Pillar& pillar = pillars[static_cast<std::size_t>(s.pillar)];
     Claim claim{static_cast<int>(v), place_on_edge(views[v], pillar, s.edge, s.from),
@@ -108,6 +121,7 @@ WallAssignment assign_walls(std::span<const PlanView> views, std::span<const Pil
     for (const WallStrip& s : strips[v]) claims[{s.pillar, s.edge}].push_back(claim_of(v, s));
 
   WallAssignment result;
+  result.shared = shared_walls(claims);
   for (std::size_t v = 0; v < views.size(); ++v) {
     const double range = views[v].to - views[v].from;
     if (strips[v].empty())

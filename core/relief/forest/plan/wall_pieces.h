@@ -27,9 +27,17 @@ struct WallPiece {
   const WallStrip& strip_at(double t) const;
 };
 
+/// A part of an edge that two viewpoints see within their pictures: places on it from 0 to 1.
+struct SharedWall {
+  int pillar = 0, edge = 0;
+  double from = 0, to = 0;
+  int views[2] = {0, 0};
+};
+
 struct WallAssignment {
   std::vector<std::vector<WallPiece>> pieces;  // of each viewpoint, in order of tangents
   std::vector<double> seen_share, used_share;  // of each viewpoint's range of tangents: met by rays, and given to it
+  std::vector<SharedWall> shared;              // of every two viewpoints, whoever gets them
 };
 
 /// `strips`: of each viewpoint, as seen_walls has them. No place belongs to two viewpoints. Pieces narrower than

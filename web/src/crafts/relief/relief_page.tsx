@@ -2,6 +2,8 @@
 import { useSignal } from '@preact/signals';
 import { Sheet } from '../../ui';
 import type { Viewport } from '../../view';
+import { ForestButton } from './forest/forest_button';
+import { ForestPage } from './forest/forest_page';
 import { exportMain, Inspector } from './inspector';
 import { viewpointOf } from './meshes';
 import { Notes } from './notes';
@@ -26,6 +28,15 @@ export interface ReliefPageProps {
 const threeQuarters: Look = { direction: [-0.5, -0.34, -1], up: [0, 1, 0] };
 
 export function ReliefPage(props: ReliefPageProps) {
+  const { forest } = props.session;
+  return forest.open.value ? (
+    <ForestPage session={forest} onChooseFile={props.onChooseFile} />
+  ) : (
+    <Relief {...props} />
+  );
+}
+
+function Relief(props: ReliefPageProps) {
   const { session, onChooseFile, onWorkerHelp } = props;
   const viewport = useSignal<Viewport | null>(null);
   const picture = useModelPicture(session, viewport, threeQuarters);
@@ -61,7 +72,9 @@ export function ReliefPage(props: ReliefPageProps) {
               what="A relief starts from a model. Drop one, or choose a sample."
               samples={session.services.catalog.value?.samples ?? []}
               onChooseFile={onChooseFile}
-            />
+            >
+              <ForestButton session={session} />
+            </EmptyModelRoom>
           ) : null}
         </ViewportPanel>
       </main>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the relief page does beyond opening models: keeps the preview up to date, shows what was solved.
-import { computed, signal } from '@preact/signals';
+import { computed, effect, signal } from '@preact/signals';
 import type { JsonObject, Operation, Report } from '../../jobs/contract';
 import { findOperation } from '../../jobs/contract';
 import { readPly } from '../../jobs/mesh_reader';
@@ -16,6 +16,7 @@ import { figure } from '../../shared/session/report';
 import { RoomSession } from '../../shared/session/room_session';
 import type { Services } from '../../shared/session/services';
 import type { Viewpoint } from '../../view';
+import { ForestSession } from './forest/forest_session';
 import { ReliefLight } from './light/relief_light';
 import { baseOf, parametersOf } from './meshes';
 import type { ReliefDocument } from './relief_document';
@@ -44,7 +45,9 @@ export class ReliefSession extends RoomSession<ReliefDocument> {
     furtherInputs: computed(() => baseInputs(this.document.value)),
     forgets: (name) => this.operation.value?.parameters.properties[name]?.['x-group'] === 'Viewpoint',
   });
-  readonly hasWork = this.model.isThere;
+  /** Several models on free-standing pillars: a view of this room with a document of its own. */
+  readonly forest: ForestSession;
+  readonly hasWork = computed(() => this.model.isThere.value || this.forest.open.value);
   readonly subject = this.model.subject;
   readonly result = this.unlessLost(computed(() => currentResult(this.document.value, this.subject.value)));
   readonly previews = new Previews<ReliefDocument, Shown>(this, {
@@ -60,12 +63,16 @@ export class ReliefSession extends RoomSession<ReliefDocument> {
 
   constructor(services: Services) {
     super(services, relief);
+    this.forest = new ForestSession(services);
+    effect(() => {
+      this.forest.active.value = this.active.value && this.forest.open.value;
+    });
     this.previews.startFollowing();
     this.light.startFollowing();
   }
 
   openFiles(files: readonly File[]): Promise<boolean> {
-    return this.model.openFiles(files);
+    return this.forest.open.value ? this.forest.openFiles(files) : this.model.openFiles(files);
   }
 
   get title(): string {

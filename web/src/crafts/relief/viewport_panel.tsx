@@ -10,6 +10,7 @@ import { Legend } from '../../shared/panels/legend';
 import { narrow } from '../../shared/panels/narrow';
 import { figure } from '../../shared/session/report';
 import { originalData, scaled } from '../../shared/panels/shaded_mesh';
+import { ForestButton } from './forest/forest_button';
 import { brightnessMapping } from './light/light_values';
 import { errorMapping, errorOf, litData, plateOf, reliefData, viewpointOf } from './meshes';
 import type { ReliefSession } from './relief_session';
@@ -120,7 +121,7 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
     <div class="viewport-panel">
       <div ref={container} class="viewport" />
       {session.model.original.value && drawing.value ? (
-        <div class="float top-left">
+        <div class="float top-left relief-views">
           <Segmented
             floating
             label="View"
@@ -128,6 +129,7 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
             value={mode.value}
             onChange={(value) => (mode.value = value)}
           />
+          <ForestButton session={session} />
         </div>
       ) : null}
       <div ref={foot} class="float bottom-left foot">

@@ -33,6 +33,8 @@ export interface EmptyModelRoomProps<D extends CraftDocument> {
   readonly what: string;
   readonly samples: readonly Sample[];
   readonly onChooseFile: () => void;
+  /** Further buttons. */
+  readonly children?: ComponentChildren;
 }
 
 /** The same for a room that makes something of a model. */
@@ -67,6 +69,7 @@ export function EmptyModelRoom<D extends CraftDocument>(props: EmptyModelRoomPro
       <Button kind={there ? 'outlined' : 'filled'} icon="upload" onClick={props.onChooseFile}>
         Open a model
       </Button>
+      {props.children}
     </EmptyRoom>
   );
 }

@@ -94,7 +94,9 @@ Json plan_json(const ForestPlan& plan) {
     };
     // Where rays meet nothing, the area ends beyond what is looked at.
     const double beyond = seen_beyond * view.distance_mm;
-    Json sight = {place(view.eye)}, surfaces = Json::array();
+    // Not in braces: of a single value in braces some compilers make a list and others a copy.
+    Json sight = Json::array(), surfaces = Json::array();
+    sight.push_back(place(view.eye));
     double t = view.from;
     for (const WallStrip& s : plan.strips[v]) {
       if (s.from > t) sight.insert(sight.end(), {place(view.at(t, beyond)), place(view.at(s.from, beyond))});
@@ -103,7 +105,8 @@ Json plan_json(const ForestPlan& plan) {
     }
     if (t < view.to) sight.insert(sight.end(), {place(view.at(t, beyond)), place(view.at(view.to, beyond))});
     for (const WallPiece& piece : plan.walls.pieces[v]) {
-      Json line = {place(on_wall(piece.strips.front(), piece.from()))};
+      Json line = Json::array();
+      line.push_back(place(on_wall(piece.strips.front(), piece.from())));
       for (const WallStrip& s : piece.strips) line.push_back(place(on_wall(s, s.to)));
       surfaces.push_back({{"pillar", piece.pillar + 1}, {"line_mm", line}});
     }
@@ -114,7 +117,15 @@ Json plan_json(const ForestPlan& plan) {
     for (const Vec2& p : pillar.outline_mm) outline.push_back(place(p));
     pillars.push_back(outline);
   }
-  return {{"viewpoints", views}, {"pillars_mm", pillars}};
+  Json shared = Json::array();
+  for (const SharedWall& wall : plan.walls.shared) {
+    const Outline& outline = plan.scene.pillars[static_cast<std::size_t>(wall.pillar)].outline_mm;
+    const Vec2 &a = corner(outline, wall.edge), &b = corner(outline, wall.edge + 1);
+    shared.push_back({{"pillar", wall.pillar + 1},
+                      {"viewpoints", {wall.views[0] + 1, wall.views[1] + 1}},
+                      {"line_mm", {place(a + wall.from * (b - a)), place(a + wall.to * (b - a))}}});
+  }
+  return {{"viewpoints", views}, {"pillars_mm", pillars}, {"shared", shared}};
 }
 
 Model standing_pillars(const SolvedForest& forest) {

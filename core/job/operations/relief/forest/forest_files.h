@@ -16,7 +16,7 @@ std::string numbered(std::size_t index, std::size_t count);
 CutSheet floor_plan(const ForestPlan& plan, double hole_diameter_mm);
 
 /// For drawing from above: of each viewpoint its eye, the area that it sees in its range, and the lines of the surfaces
-/// that are its own; outlines of pillars.
+/// that are its own; outlines of pillars; and what of them every two viewpoints see, which nobody or one of them gets.
 Json plan_json(const ForestPlan& plan);
 
 /// All pillars where they stand, one group each, in the axes of the floor.

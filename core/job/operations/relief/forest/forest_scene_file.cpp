@@ -11,7 +11,7 @@
 namespace formwright {
 namespace {
 
-constexpr int round_corners = 48, max_model_inputs = 64;
+constexpr int max_model_inputs = 64;
 
 [[noreturn]] void refuse(const std::string& sentence) { throw Error(ErrorCode::invalid_input, "scene", sentence); }
 
@@ -122,9 +122,9 @@ void read_viewpoint(const Json& object, std::size_t index, ForestSceneFile& file
 Pillar read_pillar(const Json& object, std::size_t index) {
   const Entry entry(object, "Pillar " + std::to_string(index + 1),
                     {"shape", "x_mm", "y_mm", "width_mm", "turn_deg", "outline_mm", "height_mm"});
-  Pillar pillar;
-  pillar.height_mm = entry.number("height_mm");
+  const double height_mm = entry.number("height_mm");
   if (entry.has("outline_mm")) {
+    Pillar pillar{{}, height_mm};
     const Json& corners = entry.value("outline_mm");
     if (!corners.is_array() || corners.size() > static_cast<std::size_t>(max_outline_corners))
       entry.wrong("outline_mm", "a list of at most " + std::to_string(max_outline_corners) + " corners");
@@ -134,14 +134,15 @@ Pillar read_pillar(const Json& object, std::size_t index) {
     }
     return pillar;
   }
-  const Vec2 centre(entry.number("x_mm"), entry.number("y_mm"));
-  const double width = entry.number("width_mm"), turn = entry.number("turn_deg", 0);
-  if (!(width > 0)) entry.wrong("width_mm", "more than 0");
-  const std::string shape = entry.text("shape");
-  if (shape == "round") pillar.outline_mm = round_outline(centre, width, round_corners);
-  else if (shape == "square") pillar.outline_mm = square_outline(centre, width, turn);
-  else entry.wrong("shape", "round or square; give other shapes as outline_mm");
-  return pillar;
+  PillarForm form;
+  form.centre = Vec2(entry.number("x_mm"), entry.number("y_mm"));
+  form.width_mm = entry.number("width_mm");
+  form.turn_deg = entry.number("turn_deg", 0);
+  if (!(form.width_mm > 0)) entry.wrong("width_mm", "more than 0");
+  const auto shape = shape_called(entry.text("shape"));
+  if (!shape) entry.wrong("shape", "round, square or hexagon; give other shapes as outline_mm");
+  form.shape = *shape;
+  return pillar_of(form, height_mm);
 }
 
 const Json& list_of(const Json& scene, const char* key) {
@@ -187,6 +188,16 @@ Json forest_scene_json(const ForestSceneFile& file) {
     viewpoints.push_back(one);
   }
   for (const Pillar& pillar : file.scene.pillars) {
+    if (pillar.form) {
+      Json one = {{"shape", name_of(pillar.form->shape)},
+                  {"x_mm", pillar.form->centre.x()},
+                  {"y_mm", pillar.form->centre.y()},
+                  {"width_mm", pillar.form->width_mm}};
+      if (pillar.form->turn_deg != 0) one["turn_deg"] = pillar.form->turn_deg;
+      one["height_mm"] = pillar.height_mm;
+      pillars.push_back(one);
+      continue;
+    }
     Json outline = Json::array();
     for (const Vec2& p : pillar.outline_mm) outline.push_back({p.x(), p.y()});
     pillars.push_back({{"outline_mm", outline}, {"height_mm", pillar.height_mm}});

@@ -23,7 +23,7 @@ struct ForestSceneFile {
 /// name that is not known, a value that is missing or of the wrong kind. Whether places make sense is for check_forest.
 ForestSceneFile read_forest_scene(ByteView bytes);
 
-/// With every pillar by its outline, so that it can be read again, edited or not.
+/// With every pillar by its shape or outline, so that it can be read again, edited or not.
 Json forest_scene_json(const ForestSceneFile& file);
 
 /// Four samples, seen from four sides; without pillars, which a layout makes. Thesis, Fig. 3.14.

@@ -102,6 +102,11 @@ function compareReports(a, b, tolerances) {
   });
 }
 
+/** Files of lengths in mm and counts: below a millimetre the tolerance is that of one. At most ten problems, since a file may have thousands. */
+function compareJson(name, a, b, tolerance) {
+  return tolerance === null ? [] : differences(name, JSON.parse(a), JSON.parse(b), tolerance, 1).slice(0, 10);
+}
+
 /** Vertex columns of a binary PLY as a list of arrays, by a few lines of its own. */
 function plyColumns(bytes) {
   const end = bytes.indexOf('end_header\n') + 'end_header\n'.length;
@@ -209,6 +214,7 @@ for (const file of chosen.sort()) {
       else if (/\.(gcode|egv|rd)$|^toolpath\.json$/.test(name)) {
         if (!a.bytes[name].equals(b.bytes[name])) problems.push(`${name} differs between native and WASM`);
       } else if (name.endsWith('.pdf')) problems.push(...comparePdf(name, a.bytes[name], b.bytes[name]));
+      else if (name.endsWith('.json')) problems.push(...compareJson(name, a.bytes[name], b.bytes[name], 'json' in recorded.tolerance ? recorded.tolerance.json : recorded.tolerance['*']));
       else if (name.endsWith('.ply')) problems.push(...comparePly(name, a.bytes[name], b.bytes[name], recorded.tolerance.ply ?? recorded.tolerance['*']));
     }
   }

@@ -143,6 +143,11 @@ test('viewpoints and pillars are added, changed in numbers and taken away', asyn
   await expect(eye(page, 2)).toHaveAccessibleName(/^Viewpoint 2, ball, /);
   await expect(page.getByRole('button', { name: /^Viewpoint 2, ball \d+\s% on pillars/ })).toBeVisible();
   await upToDate(page);
+  // A file that is no model is refused, and the one before stays.
+  await page.getByLabel('Model or project file').setInputFiles(fileOf('notes.obj', 'milk, eggs'));
+  await expect(page.getByText('Could not open notes.obj')).toBeVisible();
+  await page.getByRole('button', { name: 'Hide this note' }).click();
+  await expect(eye(page, 2)).toHaveAccessibleName(/^Viewpoint 2, ball, /);
   // A file that is no scene is refused by the core, and what is open stays.
   await page.getByLabel('Scene file').setInputFiles(fileOf('garden.json', '{"trees": 3}'));
   await expect(page.getByText('“trees”').or(page.getByText('"trees"')).first()).toBeVisible();
@@ -159,6 +164,18 @@ test('viewpoints and pillars are added, changed in numbers and taken away', asyn
   await expect(page.getByRole('heading', { name: '36 pillars' })).toBeVisible();
   await page.getByRole('button', { name: 'Undo', exact: false }).first().click();
   await expect(page.getByRole('combobox', { name: 'Pillars', exact: true })).toHaveValue('grid');
+
+  // The next project begins with its own model, not with the forest; the one before is found as it was left.
+  await page.goto('/#/start');
+  await page.locator('.gallery button', { hasText: 'Bust' }).click();
+  await expect(page.getByRole('button', { name: 'Solve at full detail' })).toBeVisible({ timeout: 60_000 });
+  await expect(plan(page)).toBeHidden();
+  await page.getByRole('button', { name: 'Bust', exact: true }).click(); // the project's menu
+  await page
+    .getByRole('menuitemradio', { name: /^Pillar forest/ })
+    .or(page.getByRole('menuitem', { name: /^Pillar forest/ }))
+    .click();
+  await expect(page.getByRole('heading', { name: '36 pillars' })).toBeVisible({ timeout: 60_000 });
 });
 
 test('on a phone a pillar is dragged and the list lies below', async ({ page }) => {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Draws a row of docs/zippable_gallery.md, in a browser, for scripts/draw_zippables.js: model, course, ribbon, plan, zipped cloth.
 // Not part of the page.
-import { partToken } from '../../src/crafts/zippable/views';
+import { colourToken } from '../../src/shared/panels/colour_token';
 import '../../src/crafts/zippable/zippable.css';
 import { originalData } from '../../src/shared/panels/shaded_mesh';
 import { readPly } from '../../src/jobs/mesh_reader';
@@ -76,7 +76,7 @@ async function course({ parameterised_ply, curve_obj }: RowFiles): Promise<MeshD
   const mesh = await readPly(bytesOf(parameterised_ply));
   const segment = mesh.attributes['segment'] ?? new Float32Array(mesh.positions.length / 3);
   const positions: number[] = [...mesh.positions];
-  const colours: number[] = [...segment].flatMap((part) => colourOf(partToken(part)));
+  const colours: number[] = [...segment].flatMap((part) => colourOf(colourToken(part)));
   const indices: number[] = [...mesh.indices];
   const size = extent(mesh.positions);
   for (const line of linesOf(curve_obj)) addTube(positions, colours, indices, line, 0.006 * size);

@@ -101,7 +101,7 @@ export function App({ services, sessions }: AppProps) {
     if (files.length === 0) return;
     // Until the solver has started nothing is known of formats; without one the room says so.
     const catalog = services.catalog.value ?? (await services.browser.catalog().catch(() => null));
-    const room = roomFor(files, place.value, catalog);
+    const room = sessions.relief.forest.takes(files) ? 'relief' : roomFor(files, place.value, catalog);
     if (room === null) choosing.value = files;
     else await openIn(room, files);
   };
@@ -112,6 +112,7 @@ export function App({ services, sessions }: AppProps) {
       toast(sentenceOf(thrown), true); // what is open could not be saved, and stays
       return;
     }
+    if (place.value === 'start') sessions.relief.forest.show(false);
     go(room);
     await sessions[room].openFiles(files);
   };

@@ -37,6 +37,7 @@ export function StartPage({ services, session, onChooseFile }: StartPageProps) {
   const open = (sample: string, title: string) => {
     const begin = async () => {
       await services.projects.create();
+      session.forest.show(false);
       go('relief');
       await session.model.openSample(sample, title);
     };

@@ -5,6 +5,7 @@ import { useEffect, useLayoutEffect, useRef, useState } from 'preact/hooks';
 import { Button, IconButton } from '../../ui';
 import { crafts } from '../crafts';
 import { Bold } from './bold';
+import type { Spot } from './card_place';
 import { placeCard } from './card_place';
 import './learn.css';
 import {
@@ -29,12 +30,14 @@ function LearnCard() {
   void looked.value;
   const target = pointedAt.value;
   const box = target?.isConnected ? target.getBoundingClientRect() : null;
-  const [spot, setSpot] = useState<{ readonly left: number; readonly top: number } | null>(null);
+  const [spot, setSpot] = useState<(Spot & { readonly of: string }) | null>(null);
   // At every look: the card may have been measured before it was shown, and a step has more text than the last.
   useLayoutEffect(() => {
     if (card.current === null) return;
-    const next = placeCard(card.current, box, spot);
-    if (next.left !== spot?.left || next.top !== spot.top) setSpot(next);
+    // Where it stood in another step or a window of another size says nothing of this one.
+    const of = `${now?.step ?? 0} ${innerWidth} ${innerHeight}`;
+    const next = placeCard(card.current, box, spot?.of === of ? spot : null);
+    if (next.left !== spot?.left || next.top !== spot.top || spot.of !== of) setSpot({ ...next, of });
   });
   useEffect(() => {
     // The dialog that the tutorial was chosen in takes the focus back once more when it goes.

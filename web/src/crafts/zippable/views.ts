@@ -33,10 +33,6 @@ export const viewNames: readonly { readonly value: View; readonly label: string 
   { value: 'ribbon', label: 'Zipped' },
 ];
 
-const partColours = 8;
-/** The style sheet's name of a part's colour; from the ninth part on they come again, told apart by number. */
-export const partToken = (part: number): string => `--seg-${'abcdefgh'[part % partColours] ?? 'a'}`;
-
 /** From no distortion to where all but two in a hundred vertices are. */
 export function distortionMapping({ model }: Zippable): ColourMapping {
   const values = Float32Array.from(model.mesh.attributes['distortion'] ?? [1]).sort();

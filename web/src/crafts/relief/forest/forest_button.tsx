@@ -9,7 +9,7 @@ export function ForestButton({ session }: { readonly session: ReliefSession }) {
   return (
     <Button
       title="Several models on free-standing pillars, each seen from its own viewpoint"
-      onClick={() => (session.forest.open.value = true)}
+      onClick={() => session.forest.show(true)}
     >
       Pillar forest
     </Button>

@@ -50,7 +50,7 @@ export function ForestPage({ session, onChooseFile }: ForestPageProps) {
         {shown === 'pictures' && made ? <ForestPictures session={session} result={made} /> : null}
         {shown === 'plan' && scene ? <FloorPlan session={session} scene={scene} /> : null}
         <div class="float top-left forest-bar">
-          <Button icon="chevronLeft" size="small" onClick={() => (session.open.value = false)}>
+          <Button icon="chevronLeft" size="small" onClick={() => session.show(false)}>
             Relief
           </Button>
           <Segmented

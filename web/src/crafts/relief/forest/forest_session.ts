@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the view of the pillar forest does: changes the scene, has it planned at once and made when asked.
 import { computed, effect, signal, untracked } from '@preact/signals';
-import type { Operation, Report } from '../../../jobs/contract';
-import { findOperation } from '../../../jobs/contract';
+import type { JobError, Operation, Report } from '../../../jobs/contract';
+import { asJobError, findOperation } from '../../../jobs/contract';
 import { readSolid } from '../../../jobs/mesh_reader';
 import type { CraftModel } from '../../../shared/session/craft_document';
 import { inForce, modelsElsewhere, nameProject, titleOf } from '../../../shared/session/craft_document';
@@ -11,6 +11,7 @@ import { expectedTimes } from '../../../shared/session/estimate';
 import { outputOf, solveInFull } from '../../../shared/session/full_solve';
 import { bytesOf } from '../../../shared/session/import_model';
 import { figure } from '../../../shared/session/report';
+import type { BusyOptions, Change } from '../../../shared/session/room_session';
 import { RoomSession } from '../../../shared/session/room_session';
 import type { Services } from '../../../shared/session/services';
 import type { MeshData } from '../../../view';
@@ -22,6 +23,20 @@ import { changeViewpoint, readScene, sceneBytes, withSource } from './scene';
 
 const openKey = 'formwright.relief.forest';
 const projectTitle = 'Pillar forest';
+
+interface Opened {
+  readonly project: string;
+  readonly open: boolean;
+}
+
+function readOpened(): Opened | null {
+  const text = sessionStorage.getItem(openKey);
+  return text === null ? null : (JSON.parse(text) as Opened);
+}
+
+/** "model", "model_2", ... */
+const isModelInput = (where: string): boolean => /^model(_\d+)?$/.test(where);
+const isSceneFile = ({ name }: File): boolean => name.toLowerCase().endsWith('.json');
 
 export class ForestSession extends RoomSession<ForestDocument> {
   readonly operationName = forestOperation;
@@ -48,8 +63,15 @@ export class ForestSession extends RoomSession<ForestDocument> {
     const { scene, parameters, results } = this.document.value;
     return scene !== null || results.length > 0 || Object.keys(parameters).length > 0;
   });
-  /** The room shows it in the place of the relief. Another tab or a reload finds it as it was left. */
-  readonly open = signal(sessionStorage.getItem(openKey) !== null);
+  /** In which project it was last opened or left. */
+  readonly #opened = signal<Opened | null>(readOpened());
+  /** The room shows it in the place of the relief. A reload finds it as it was left; a project that has nothing but a forest shows it. */
+  readonly open = computed(() => {
+    const { id, crafts } = this.services.projects.document.value;
+    const opened = this.#opened.value;
+    if (opened?.project === id) return opened.open;
+    return crafts[forest.craft] !== undefined && crafts['relief'] === undefined;
+  });
   readonly chosen = signal<Chosen | null>(null);
   readonly plan = new LivePlan(this);
   /** The file of the scene in force. */
@@ -83,9 +105,10 @@ export class ForestSession extends RoomSession<ForestDocument> {
 
   constructor(services: Services) {
     super(services, forest);
+    const projectId = computed(() => services.projects.document.value.id);
     effect(() => {
-      if (this.open.value) sessionStorage.setItem(openKey, '1');
-      else sessionStorage.removeItem(openKey);
+      const opened = this.#opened.value;
+      if (opened) sessionStorage.setItem(openKey, JSON.stringify(opened));
     });
     effect(() => {
       const { scene } = this.document.value;
@@ -103,7 +126,21 @@ export class ForestSession extends RoomSession<ForestDocument> {
       const shown = this.shown.value;
       if (this.active.value) void this.#readResult(shown);
     });
+    effect(() => {
+      void projectId.value;
+      this.chosen.value = null; // it was of another project's scene
+    });
     this.plan.startFollowing();
+  }
+
+  /** In the project that is open; the next one begins with the relief. */
+  show(open: boolean): void {
+    this.#opened.value = { project: this.services.projects.document.peek().id, open };
+  }
+
+  /** Dropped here, a JSON file is a scene. */
+  takes(files: readonly File[]): boolean {
+    return this.active.value && files.some(isSceneFile);
   }
 
   async #readResult(result: ForestResult | null): Promise<void> {
@@ -203,12 +240,12 @@ export class ForestSession extends RoomSession<ForestDocument> {
   /** A model of another room takes the place of a viewpoint's. */
   takeModel(viewpoint: number, model: CraftModel): void {
     const title = titleOf(model.source).replace(/\.[^.]+$/, '');
-    this.#addModels([{ file_name: `${title}.ply`, file: model.mesh }], viewpoint);
+    void this.#addModels([{ file_name: `${title}.ply`, file: model.mesh }], viewpoint);
   }
 
   /** Models for the chosen viewpoint and those after it, or a scene. */
   async openFiles(files: readonly File[]): Promise<boolean> {
-    const sceneFile = files.find(({ name }) => name.toLowerCase().endsWith('.json'));
+    const sceneFile = files.find(isSceneFile);
     if (sceneFile) return await this.#openScene(sceneFile);
     const kept = [];
     for (const file of files)
@@ -220,51 +257,82 @@ export class ForestSession extends RoomSession<ForestDocument> {
         ),
       });
     const chosen = this.chosen.value;
-    return this.#addModels(kept, chosen?.kind === 'viewpoint' ? chosen.index : 0);
+    return await this.#addModels(kept, chosen?.kind === 'viewpoint' ? chosen.index : 0);
   }
 
-  #addModels(models: ForestDocument['models'], first: number): boolean {
+  async #addModels(models: ForestDocument['models'], first: number): Promise<boolean> {
     const scene = this.scene.value;
     const operation = this.operation.value;
     const [one] = models;
     if (scene === null || operation === null || one === undefined) return false;
-    const before = this.document.value.models.length;
+    const before = this.document.value.models;
     const changed = models.reduce(
       (next, _, i) =>
-        changeViewpoint(next, first + i, (viewpoint) => withSource(viewpoint, { model: before + i + 1 })),
+        changeViewpoint(next, first + i, (viewpoint) =>
+          withSource(viewpoint, { model: before.length + i + 1 }),
+        ),
       scene,
     );
-    this.#nameProject();
-    this.services.projects.do(forest.addModels(operation, models, changed, `Open ${one.file_name}`));
-    this.commit();
-    return true;
+    const name = one.file_name;
+    const opened = await this.busy(
+      'opening',
+      name,
+      async (options) => {
+        await this.#readByCore(sceneBytes(changed), [...before, ...models], options).catch(
+          (thrown: unknown) => {
+            // What the scene lacks is said of it as it stands, with the model in its place.
+            const { code, where } = asJobError(thrown);
+            if (code !== 'invalid_input' || isModelInput(where)) throw thrown;
+          },
+        );
+        this.#nameProject(options.do);
+        options.do(forest.addModels(operation, models, changed, `Open ${name}`));
+        this.commit();
+        return true;
+      },
+      this.#couldNotOpen(name),
+    );
+    return opened ?? false;
   }
 
-  /** As the core reads it: what it refuses it says. */
   async #openScene(file: File): Promise<boolean> {
     const opened = await this.busy(
       'opening',
       file.name,
       async (options) => {
-        const { browser, projects } = this.services;
-        const hash = await projects.blobs.hold(new Uint8Array(await file.arrayBuffer()));
-        const { inputs } = subjectOf(hash, this.document.value.models);
-        const job = { operation: forestOperation, parameters: {}, inputs, outputs: ['scene.json'] };
-        const scene = readScene(await bytesOf(await browser.run(job, options), 'scene.json'));
+        const bytes = new Uint8Array(await file.arrayBuffer());
+        const scene = await this.#readByCore(bytes, this.document.value.models, options);
         const operation = this.operation.value;
         if (operation) options.do(forest.setScene(operation, scene, `Open ${file.name}`));
         this.commit();
         return true;
       },
-      ({ message }) => (this.problem.value = { kind: 'file', title: `Could not open ${file.name}`, message }),
+      this.#couldNotOpen(file.name),
     );
     return opened ?? false;
   }
 
-  #nameProject(): void {
+  /** The scene with its models: throws what the core refuses. */
+  async #readByCore(
+    bytes: Uint8Array<ArrayBuffer>,
+    models: ForestDocument['models'],
+    options: BusyOptions,
+  ): Promise<Scene> {
+    const { browser, projects } = this.services;
+    const { inputs } = subjectOf(await projects.blobs.hold(bytes), models);
+    const job = { operation: forestOperation, parameters: {}, inputs, outputs: ['scene.json'] };
+    return readScene(await bytesOf(await browser.run(job, options), 'scene.json'));
+  }
+
+  #couldNotOpen(name: string) {
+    return ({ message }: JobError) =>
+      (this.problem.value = { kind: 'file', title: `Could not open ${name}`, message });
+  }
+
+  #nameProject(change: Change = (command) => this.services.projects.do(command)): void {
     const { projects } = this.services;
     if (projects.isBlank.value && projects.document.value.name === 'New project')
-      projects.do(nameProject(projectTitle));
+      change(nameProject(projectTitle));
   }
 
   // ---- what every room does ----

@@ -29,7 +29,9 @@ export interface Planned extends PlanRequest {
 }
 
 const sameRequest = (a: PlanRequest, b: PlanRequest): boolean =>
-  jsonEqual(a.parameters, b.parameters) && sameScene(a.scene, b.scene) && a.models.length === b.models.length;
+  jsonEqual(a.parameters, b.parameters) &&
+  sameScene(a.scene, b.scene) &&
+  subjectOf(null, a.models).key === subjectOf(null, b.models).key;
 
 export class LivePlan {
   /** The last that the core could make. */

@@ -64,6 +64,7 @@ describe('pillars', () => {
 
   it('become wider about their middle', () => {
     expect(widenedPillar(square, 20)).toEqual({ ...square, width_mm: 20 });
+    expect(widenedPillar(outlined, 0)).toEqual(outlined); // nothing could be widened again
     const wide = widenedPillar(outlined, 40);
     expect(widthOf(wide)).toBe(40);
     expect(placeOf(wide)).toEqual([10, 5]);

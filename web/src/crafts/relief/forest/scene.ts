@@ -97,8 +97,9 @@ export function movedPillar(pillar: Pillar, [x, y]: Place): Pillar {
   return { ...pillar, outline_mm: pillar.outline_mm.map(([a, b]) => [a + byX, b + byY] as const) };
 }
 
-/** An outline becomes larger or smaller about its middle. */
+/** An outline becomes larger or smaller about its middle; without a width it would have no shape to come back to. */
 export function widenedPillar(pillar: Pillar, width_mm: number): Pillar {
+  if (!isShaped(pillar) && !(width_mm > 0)) return pillar;
   if (isShaped(pillar)) return { ...pillar, width_mm };
   const [x, y] = placeOf(pillar);
   const by = width_mm / widthOf(pillar);

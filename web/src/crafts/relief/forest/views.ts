@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the view of the forest shows, and what its parts are called. Outlives a visit to another page.
 import { signal } from '@preact/signals';
+import { colourToken } from '../../../shared/panels/colour_token';
 import { formatFixed } from '../../../ui';
 import type { ForestSession } from './forest_session';
 import type { Chosen, Pillar, Viewpoint } from './scene';
@@ -11,9 +12,7 @@ export const view = signal<ForestView>('plan');
 /** The plan leaves out eyes that stand far away, or shows everything. */
 export const planReach = signal<'pillars' | 'eyes'>('pillars');
 
-const colours = 8;
-/** The style sheet's name of a viewpoint's colour; from the ninth on they come again, told apart by number. */
-export const colourOf = (viewpoint: number): string => `var(--seg-${'abcdefgh'[viewpoint % colours] ?? 'a'})`;
+export const colourOf = (viewpoint: number): string => `var(${colourToken(viewpoint)})`;
 
 /** "Bust", "lion". */
 export function modelName(session: ForestSession, { sample, model }: Viewpoint): string {

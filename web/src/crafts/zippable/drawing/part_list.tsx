@@ -8,7 +8,8 @@ import { ownWindings, withOwnWindings } from './own_windings';
 import { partWarning, unwrapWords } from './part_notes';
 import { tool } from './draw_actions';
 import { drawnOn } from '../zippable_document';
-import { chosenPart, partToken, pointed, view } from '../views';
+import { colourToken } from '../../../shared/panels/colour_token';
+import { chosenPart, pointed, view } from '../views';
 import type { ZippableSession } from '../zippable_session';
 
 export function PartList({ session }: { session: ZippableSession }) {
@@ -38,7 +39,7 @@ export function PartList({ session }: { session: ZippableSession }) {
                   aria-pressed={chosen}
                   onClick={() => (chosenPart.value = chosen ? null : part)}
                 >
-                  <i class="part-badge" style={{ '--part': `var(${partToken(part)})` }} aria-hidden="true">
+                  <i class="part-badge" style={{ '--part': `var(${colourToken(part)})` }} aria-hidden="true">
                     {part + 1}
                   </i>
                   <span class="grow">

@@ -12,7 +12,8 @@ import { fabricName, fabricToken, paintedRibbon } from './paint';
 import { alongAt, flatOf, placeInFlat, seamAt } from './ribbon_places';
 import type { SendToMachine } from '../sheets/send_sheet';
 import { Sheets } from '../sheets/sheets';
-import { chosenPart, flatView, partToken, playing, pointed } from '../views';
+import { colourToken } from '../../../shared/panels/colour_token';
+import { chosenPart, flatView, playing, pointed } from '../views';
 import { planning } from '../zippable_document';
 import type { Zippable, ZippableSession } from '../zippable_session';
 
@@ -225,7 +226,7 @@ function Labels({ shown, fit }: { shown: Zippable; fit: FlatFit }) {
             key={part}
             class="flat-label"
             transform={`translate(${fit.x + fit.pxPerMm * at[0]} ${fit.y - fit.pxPerMm * at[1]})`}
-            style={{ '--part': `var(${partToken(part)})` }}
+            style={{ '--part': `var(${colourToken(part)})` }}
           >
             <title>{partName(part)}</title>
             <circle r={10} />

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the ribbon is painted in: each part in its own colour, or both fabrics in theirs.
 import type { Design } from '../design';
-import { partToken } from '../views';
+import { colourToken } from '../../../shared/panels/colour_token';
 import type { RibbonPieces } from './cut_ribbon';
 
 /** Triangles that are painted alike. */
@@ -20,10 +20,10 @@ export interface Painted {
 const fabrics = 2;
 /** Fabrics as a maker counts them, and as the plan's sheets name them. */
 export const fabricName = (fabric: number): string => `Colour ${fabric + 1}`;
-export const fabricToken = (fabric: number): string => partToken(fabric);
+export const fabricToken = (fabric: number): string => colourToken(fabric);
 
 export const paintsOfParts = (count: number): Paint[] =>
-  Array.from({ length: count }, (_, part) => ({ part, token: partToken(part) }));
+  Array.from({ length: count }, (_, part) => ({ part, token: colourToken(part) }));
 
 export function paintedRibbon(
   { parts, fabric }: Design,

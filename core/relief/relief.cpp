@@ -12,6 +12,7 @@
 #include "relief/balanced_relief.h"
 #include "relief/base/depth_bounds.h"
 #include "relief/baselines.h"
+#include "relief/view/outline.h"
 
 namespace formwright {
 namespace {
@@ -173,10 +174,12 @@ ReliefSolver::ReliefSolver(const TriangleMesh& mesh, const ReliefOptions& option
   }
   Stopwatch watch;
   context.progress(0, "Finding the visible surface");
+  std::vector<int> component = vertex_components(Adjacency(mesh)).of;
   frame_ = make_view_frame(mesh, options);
   {
     const RayCaster caster(TriangleMesh{frame_.P, F_});
     visibility_ = find_visibility(frame_, F_, caster, context);
+    visibility_.outline = find_outline(frame_, F_, component, caster, context);
     if (options.depth_order) order_rows_ = depth_order_rows(frame_, F_, caster, context);
   }
   if (visibility_.visible_vertices == 0)
@@ -187,27 +190,26 @@ ReliefSolver::ReliefSolver(const TriangleMesh& mesh, const ReliefOptions& option
   SparseMatrix Q = energy_->lower_hessian(context);
   // The mean curvature scale of the mesh sits in Q; a unit diagonal keeps every tolerance below free of it.
   Q *= 1 / Q.diagonal().mean();
-  std::vector<int> component = vertex_components(Adjacency(mesh)).of;
   seconds_setup_ = watch.lap();
   const auto span = context.span(0.35, 1, "Factorising");
   qp_.set_energy(Q, std::move(component), frame_.P, context);
   seconds_factorise_ = watch.seconds();
 }
 
-/// Rows that contradict the bounds only together are left out as a whole, where the base is not flat.
+/// Rows that contradict the bounds only together are left out as a whole, where the bounds are not the same everywhere.
 BoundedQpSolution ReliefSolver::solve_on_base(BoundedQpConstraints& constraints, const BoundedQpOptions& options,
-                                              bool flat, Context& context) {
+                                              bool even, Context& context) {
   try {
     return qp_.solve(constraints, options, context);
   } catch (const Error& error) {
-    if (flat || constraints.rows.empty() || error.code() != ErrorCode::could_not_solve) throw;
+    if (even || constraints.rows.empty() || error.code() != ErrorCode::could_not_solve) throw;
   }
   constraints.rows.clear();
   return qp_.solve(constraints, options, context);
 }
 
 int ReliefSolver::balance(const ReliefOptions& options, const DepthBounds& bounds,
-                          const BoundedQpConstraints& constraints, bool flat, Eigen::VectorXd& u, Context& context) {
+                          const BoundedQpConstraints& constraints, Eigen::VectorXd& u, Context& context) {
   if (!balanced_) {
     const AppearanceEnergy energy(frame_, F_,
                                   vertex_weights(visibility_, std::min(balanced_hidden_weight, options.hidden_weight)));
@@ -215,7 +217,7 @@ int ReliefSolver::balance(const ReliefOptions& options, const DepthBounds& bound
   }
   const BalancedResult balanced = balanced_relief(
       *balanced_,
-      {frame_, visibility_, bounds, flat, (options.thickness_mm + options.carve_depth_mm) / options.width_mm,
+      {frame_, visibility_, bounds, bounds.even, (options.thickness_mm + options.carve_depth_mm) / options.width_mm,
        constraints.lower, constraints.upper, constraints.rows},
       u, BalancedSettings{}, context);
   u = balanced.u;
@@ -224,25 +226,25 @@ int ReliefSolver::balance(const ReliefOptions& options, const DepthBounds& bound
 
 Relief ReliefSolver::solve(const ReliefOptions& options, const BaseSurface& base, Context& context) {
   const DepthBounds bounds = depth_bounds(frame_, visibility_, base, options, context);
-  if (bounds.groups == 1) return solve_within(options, bounds, nullptr, base.is_flat(), context);
+  if (bounds.groups == 1) return solve_within(options, bounds, nullptr, context);
   const BandBorders borders(frame_, *base.bands(), bounds);
-  return solve_within(options, bounds, &borders, false, context);
+  return solve_within(options, bounds, &borders, context);
 }
 
 Relief ReliefSolver::solve(const ReliefOptions& options, const DepthBounds& bounds, const GroupBorders& borders,
                            Context& context) {
-  return solve_within(options, bounds, &borders, false, context);
+  return solve_within(options, bounds, &borders, context);
 }
 
 Relief ReliefSolver::solve_within(const ReliefOptions& options, const DepthBounds& bounds, const GroupBorders* borders,
-                                  bool flat, Context& context) {
+                                  Context& context) {
   BoundedQpConstraints constraints = constraints_of(frame_, bounds);
   if (options.appearance == Appearance::balanced && borders != nullptr)
     throw Error(
         ErrorCode::invalid_input, "appearance",
         "On a base in steps the relief is made with the appearance \"detail\" only: choose it, or another base.");
   // On a plate lent, not copied: at 300k vertices the rows are tens of megabytes.
-  const bool lent = flat;
+  const bool lent = bounds.even;
   struct Lent {
     std::vector<InequalityRow>&from, &to;
     bool lent;
@@ -274,7 +276,7 @@ Relief ReliefSolver::solve_within(const ReliefOptions& options, const DepthBound
   relief.u = settled(frame_, constraints, relief.qp.u, m);
   if (options.appearance == Appearance::balanced) {
     const auto span = context.span(0.4, 0.9, "Restoring broad forms");
-    relief.balanced_steps = balance(options, bounds, constraints, flat, relief.u, context);
+    relief.balanced_steps = balance(options, bounds, constraints, relief.u, context);
   }
   context.progress(0.9, "Comparing normals");
   relief.moved = frame_.moved(relief.u);

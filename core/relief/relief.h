@@ -67,13 +67,13 @@ class ReliefSolver {
   double memory_mb() const;
 
  private:
-  Relief solve_within(const ReliefOptions& options, const DepthBounds& bounds, const GroupBorders* borders, bool flat,
+  Relief solve_within(const ReliefOptions& options, const DepthBounds& bounds, const GroupBorders* borders,
                       Context& context);
-  BoundedQpSolution solve_on_base(BoundedQpConstraints& constraints, const BoundedQpOptions& options, bool flat,
+  BoundedQpSolution solve_on_base(BoundedQpConstraints& constraints, const BoundedQpOptions& options, bool even,
                                   Context& context);
   /// Moves `u` from the optimum of eq. (3.13) to the balanced relief; the number of steps.
   int balance(const ReliefOptions& options, const DepthBounds& bounds, const BoundedQpConstraints& constraints,
-              bool flat, Eigen::VectorXd& u, Context& context);
+              Eigen::VectorXd& u, Context& context);
 
   ViewFrame frame_;
   Triangles F_;

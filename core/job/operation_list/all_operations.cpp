@@ -41,7 +41,8 @@ std::vector<Operation> all_operations(Operation evidence_register) {
                                 import_operation(),
                                 simplify_operation(),
                                 subdivide_operation(),
-                                convert_operation()};
+                                convert_operation(),
+                                combine_operation()};
   for (Operation& operation : all) operation.report.push_back(made_by_field());
   return all;
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <string>
 
 #include "base/parallel.h"
@@ -40,14 +41,29 @@ DepthBounds depth_bounds(const ViewFrame& frame, const Visibility& visibility, c
   bounds.below = carve;
   const BaseBands* const bands = base.bands();
   if (bands != nullptr) bounds.groups = bands->count();
+  const double outline = options.outline_mm.value_or(INFINITY) / options.width_mm;
+  const bool tied = outline < std::max(thickness, carve);
+  bounds.even = base.is_flat() && !tied;
+  // Depths before and behind the base, of one vertex.
+  const auto before = [&](std::size_t i) {
+    return tied && visibility.outline[i] ? std::min(thickness, outline) : thickness;
+  };
+  const auto behind = [&](std::size_t i) { return tied && visibility.outline[i] ? std::min(carve, outline) : carve; };
+  if (tied)
+    for (std::size_t i = 0; i < n; ++i) bounds.bounded[i] |= visibility.outline[i];
+  if (base.is_flat() && !bounds.even)
+    for (std::size_t i = 0; i < n; ++i) {
+      bounds.nearest[static_cast<Eigen::Index>(i)] = -before(i);
+      bounds.farthest[static_cast<Eigen::Index>(i)] = behind(i);
+    }
   if (!base.is_flat()) {
     std::atomic<int> missed = 0;
     parallel_for(n, vertices_a_chunk, [&](std::size_t begin, std::size_t end) {
       context.check_cancelled();
       for (std::size_t i = begin; i < end; ++i) {
         const auto vertex = static_cast<Eigen::Index>(i);
-        const auto nearest = base.depth_on_ray(frame, vertex, -thickness),
-                   farthest = base.depth_on_ray(frame, vertex, carve);
+        const auto nearest = base.depth_on_ray(frame, vertex, -before(i)),
+                   farthest = base.depth_on_ray(frame, vertex, behind(i));
         if (bands != nullptr) bounds.group[i] = bands->of_ray(frame, frame.P.row(vertex).transpose());
         if (nearest && farthest) {
           bounds.nearest[vertex] = *nearest;

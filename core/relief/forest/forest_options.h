@@ -3,7 +3,7 @@
 // What a maker chooses for a forest of pillars: thesis, section 3.3, "3D camouflage".
 #include <tuple>
 
-#include "base/data/parameters.h"
+#include "geometry/samples/sample_parameters.h"
 #include "relief/forest/plan/forest_layout.h"
 #include "relief/forest/plan/wall_pieces.h"
 #include "relief/view/relief_options.h"
@@ -169,11 +169,7 @@ struct ForestOptions {
           .group("Output")
           .slider(400, 1600)
           .advanced(),
-      parameter("scene_vertices", &ForestOptions::scene_vertices, "Vertices of the samples", unit::none, 500, 500000,
-                "Number of vertices of each model of the built-in scene. Fewer are solved faster and show less detail.")
-          .group("Output")
-          .slider(2000, 60000)
-          .advanced()};
+      scene_vertices_parameter(&ForestOptions::scene_vertices).group("Output")};
 };
 
 }  // namespace formwright

@@ -88,6 +88,7 @@ struct ReliefOptions {
   double field_of_view_deg = 20;
   std::optional<double> distance_mm;
   BoundedVertices bounded_vertices = BoundedVertices::all;
+  std::optional<double> outline_mm;
   Appearance appearance = Appearance::detail;
   double hidden_weight = 1;
   bool depth_order = true;
@@ -175,6 +176,11 @@ struct ReliefOptions {
           .slider(50, 2000)
           .advanced(),
       bounded_vertices_parameter(&ReliefOptions::bounded_vertices),
+      parameter(
+          "outline_mm", &ReliefOptions::outline_mm, "Height of the outline", unit::mm, 0.01, 1000,
+          "How far the outline of every separate part of the model may be from the base. 0.1 mm lets several models, or a figure, lie on the base with their edges. Automatic: as far as the thickness.")
+          .group("Shape")
+          .slider(0.05, 5),
       parameter(
           "appearance", &ReliefOptions::appearance, "Appearance",
           "Crisp detail keeps fine detail best and flattens broad forms. Detail and broad forms keeps soft, large forms too, so that the relief looks more like the model; it takes about twice as long.")

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "relief/view/sight.h"
 
 namespace formwright {
 namespace {
@@ -12,23 +13,6 @@ namespace {
 constexpr std::size_t grain = 2048;
 // Of the picture's width: nearer than this two surfaces count as touching, and their order as undecided.
 constexpr double touching = 1e-7;
-
-struct Ray {
-  Vec3 origin, direction;
-  double vertex_distance;
-};
-
-/// From the viewpoint, or, straight on, from a plane in front of everything.
-Ray ray_of(const ViewFrame& frame, Eigen::Index vertex, double front) {
-  const Vec3 p = frame.P.row(vertex).transpose();
-  if (frame.kappa == 0) return {Vec3(p.x(), p.y(), front), Vec3::UnitZ(), p.z() - front};
-  const Vec3 origin(0, 0, -1 / frame.kappa);
-  return {origin, (p - origin).normalized(), (p - origin).norm()};
-}
-
-bool holds(const Triangles& F, int face, Eigen::Index vertex) {
-  return F(face, 0) == vertex || F(face, 1) == vertex || F(face, 2) == vertex;
-}
 
 }  // namespace
 
@@ -42,17 +26,17 @@ bool faces_viewer(const ViewFrame& frame, const Positions& P, const Triangles& F
 
 Visibility find_visibility(const ViewFrame& frame, const Triangles& F, const RayCaster& caster, Context& context) {
   const auto n = static_cast<std::size_t>(frame.P.rows());
-  const double front = frame.P.col(2).minCoeff() - 1;
+  const Sight sight(frame);
   Visibility result;
   result.vertex.assign(n, 0);
   parallel_for(n, grain, [&](std::size_t begin, std::size_t end) {
     context.check_cancelled();
     for (std::size_t i = begin; i < end; ++i) {
       const auto vertex = static_cast<Eigen::Index>(i);
-      const Ray ray = ray_of(frame, vertex, front);
+      const SightRay ray = sight.at(vertex);
       // Up to the vertex only; what touches it does not hide it.
       const auto hit = caster.first_hit(ray.origin, ray.direction, 0, ray.vertex_distance - touching);
-      result.vertex[i] = !hit || holds(F, hit->face, vertex);
+      result.vertex[i] = !hit || has_corner(F, hit->face, vertex);
     }
   });
   for (const char visible : result.vertex) result.visible_vertices += visible;
@@ -67,12 +51,11 @@ Visibility find_visibility(const ViewFrame& frame, const Triangles& F, const Ray
 std::vector<InequalityRow> depth_order_rows(const ViewFrame& frame, const Triangles& F, const RayCaster& caster,
                                             Context& context) {
   const auto n = static_cast<std::size_t>(frame.P.rows());
-  const double front = frame.P.col(2).minCoeff() - 1;
-  const double far = 4 * (frame.P.rowwise().norm().maxCoeff() + 1) + (frame.kappa > 0 ? 1 / frame.kappa : 0);
+  const Sight sight(frame);
   std::vector<std::vector<InequalityRow>> chunks((n + grain - 1) / grain);
 
   // z_near + q_near u_near <= z_far + q_far u_far, with q = 1 + kappa z.
-  const auto add_row = [&](std::vector<InequalityRow>& rows, int vertex, const RayHit& hit, const Ray& ray,
+  const auto add_row = [&](std::vector<InequalityRow>& rows, int vertex, const RayHit& hit, const SightRay& ray,
                            bool hit_is_behind) {
     const double z_vertex = frame.P(vertex, 2), z_hit = (ray.origin + hit.distance * ray.direction).z();
     const double sign = hit_is_behind ? 1 : -1;
@@ -90,11 +73,11 @@ std::vector<InequalityRow> depth_order_rows(const ViewFrame& frame, const Triang
     std::vector<InequalityRow>& rows = chunks[begin / grain];
     for (std::size_t i = begin; i < end; ++i) {
       const int vertex = static_cast<int>(i);
-      const Ray ray = ray_of(frame, vertex, front);
+      const SightRay ray = sight.at(vertex);
       const RayHit* before = nullptr;
-      const std::vector<RayHit> hits = caster.all_hits(ray.origin, ray.direction, 0, far);
+      const std::vector<RayHit> hits = caster.all_hits(ray.origin, ray.direction, 0, sight.reach());
       for (const RayHit& hit : hits) {
-        if (holds(F, hit.face, vertex) || std::abs(hit.distance - ray.vertex_distance) < touching) continue;
+        if (has_corner(F, hit.face, vertex) || std::abs(hit.distance - ray.vertex_distance) < touching) continue;
         if (hit.distance < ray.vertex_distance) {
           before = &hit;
         } else {

@@ -11,8 +11,9 @@
 namespace formwright {
 
 struct Visibility {
-  std::vector<char> vertex;  // 1 where nothing lies between the viewpoint and the vertex
-  std::vector<char> face;    // 1 where the face is turned to the viewer and its three vertices are visible
+  std::vector<char> vertex;   // 1 where nothing lies between the viewpoint and the vertex
+  std::vector<char> face;     // 1 where the face is turned to the viewer and its three vertices are visible
+  std::vector<char> outline;  // 1 on the border of a connected part's picture; see find_outline
   int visible_vertices = 0;
 };
 

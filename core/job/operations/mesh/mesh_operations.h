@@ -8,4 +8,5 @@ Operation import_operation();     // read, repair, measure
 Operation simplify_operation();   // fewer vertices for a preview
 Operation subdivide_operation();  // more vertices
 Operation convert_operation();    // any format into any other
+Operation combine_operation();    // several models into one
 }  // namespace formwright

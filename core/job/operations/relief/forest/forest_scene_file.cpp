@@ -4,114 +4,26 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/data/json_text.h"
 #include "base/error.h"
-#include "geometry/samples/samples.h"
 
 namespace formwright {
 namespace {
 
-constexpr int max_model_inputs = 64;
-
-[[noreturn]] void refuse(const std::string& sentence) { throw Error(ErrorCode::invalid_input, "scene", sentence); }
-
-/// One viewpoint or pillar of the file.
-class Entry {
- public:
-  Entry(const Json& object, std::string name, std::initializer_list<const char*> known)
-      : object_(object), name_(std::move(name)) {
-    if (!object.is_object()) refuse(name_ + " of the scene must be a JSON object.");
-    for (const auto& [key, value] : object.items())
-      if (std::ranges::find_if(known, [&k = key](const char* other) { return k == other; }) == known.end()) {
-        std::string list;
-        for (const char* other : known) list += (list.empty() ? "" : ", ") + std::string(other);
-        refuse(name_ + " of the scene has \"" + key.substr(0, 40) + "\", which is not known; there are: " + list + ".");
-      }
-  }
-
-  bool has(const char* key) const { return object_.contains(key); }
-  const Json& value(const char* key) const {
-    if (!has(key)) refuse(name_ + " of the scene has no " + key + ": add it.");
-    return object_[key];
-  }
-  double number(const char* key) const { return checked(value(key), key, "a number"); }
-  double number(const char* key, double otherwise) const { return has(key) ? number(key) : otherwise; }
-  int whole(const char* key) const {
-    const double n = number(key);
-    if (n != std::floor(n) || std::abs(n) > 1e9) wrong(key, "a whole number");
-    return static_cast<int>(n);
-  }
-  std::string text(const char* key) const {
-    if (!value(key).is_string()) wrong(key, "text");
-    return value(key).get<std::string>();
-  }
-  template <std::size_t N>
-  std::array<double, N> numbers(const char* key) const {
-    return numbers_of<N>(value(key), key);
-  }
-  template <std::size_t N>
-  std::array<double, N> numbers_of(const Json& list, const char* key) const {
-    const std::string kind = "a list of " + std::to_string(N) + " numbers";
-    std::array<double, N> result{};
-    if (!list.is_array() || list.size() != N) wrong(key, kind);
-    for (std::size_t k = 0; k < N; ++k) result[k] = checked(list[k], key, kind);
-    return result;
-  }
-  [[noreturn]] void wrong(const char* key, const std::string& kind) const {
-    refuse(name_ + " of the scene has " + key + " that is not " + kind + ".");
-  }
-  const std::string& name() const { return name_; }
-
- private:
-  double checked(const Json& n, const char* key, const std::string& kind) const {
-    if (!n.is_number() || !std::isfinite(n.get<double>())) wrong(key, kind);
-    return n.get<double>();
-  }
-  const Json& object_;
-  std::string name_;
-};
-
 Vec3 vector_of(const std::array<double, 3>& n) { return {n[0], n[1], n[2]}; }
-std::array<double, 3> array_of(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
-
-const SampleInfo& sample_called(const std::string& name, const std::string& whose) {
-  std::string list;
-  for (const SampleInfo& info : sample_catalog()) {
-    if (info.name == name) return info;
-    list += (list.empty() ? "" : ", ") + info.name;
-  }
-  refuse(whose + " of the scene asks for a sample \"" + name.substr(0, 40) + "\"; there are: " + list + ".");
-}
 
 void read_viewpoint(const Json& object, std::size_t index, ForestSceneFile& file) {
-  const Entry entry(object, "Viewpoint " + std::to_string(index + 1),
-                    {"eye_mm", "look_at_mm", "width_mm", "sample", "vertices", "model", "direction", "up"});
+  const SceneEntry entry(object, "Viewpoint " + std::to_string(index + 1),
+                         {"eye_mm", "look_at_mm", "width_mm", "sample", "vertices", "model", "direction", "up"});
   ForestViewpoint view;
-  ForestModelSource source;
   view.eye_mm = vector_of(entry.numbers<3>("eye_mm"));
   view.look_at_mm = vector_of(entry.numbers<3>("look_at_mm"));
   view.width_mm = entry.number("width_mm");
-  if (entry.has("sample") == entry.has("model"))
-    refuse(entry.name() + " of the scene needs either a sample or the number of a model.");
-  if (entry.has("sample")) {
-    source.sample = entry.text("sample");
+  const SceneModelSource source = read_model_source(entry);
+  view.model = source.name();
+  if (source.input_number == 0) {
     const SampleInfo& info = sample_called(source.sample, entry.name());
     view.direction = array_of(info.view_direction);
     view.up = array_of(info.view_up);
-    view.model = source.sample;
-    if (entry.has("vertices")) {
-      source.sample_vertices = entry.whole("vertices");
-      if (source.sample_vertices < min_sample_vertices || source.sample_vertices > max_sample_vertices)
-        refuse(entry.name() + " of the scene asks for a sample of " + std::to_string(source.sample_vertices) +
-               " vertices: give " + std::to_string(min_sample_vertices) + " to " + std::to_string(max_sample_vertices) +
-               ".");
-    }
-  } else {
-    source.input_number = entry.whole("model");
-    if (source.input_number < 1 || source.input_number > max_model_inputs)
-      refuse(entry.name() + " of the scene asks for model " + std::to_string(source.input_number) +
-             ": models are numbered from 1, in the order in which they are given.");
-    view.model = "model " + std::to_string(source.input_number);
   }
   if (entry.has("direction")) view.direction = entry.numbers<3>("direction");
   if (entry.has("up")) view.up = entry.numbers<3>("up");
@@ -120,8 +32,8 @@ void read_viewpoint(const Json& object, std::size_t index, ForestSceneFile& file
 }
 
 Pillar read_pillar(const Json& object, std::size_t index) {
-  const Entry entry(object, "Pillar " + std::to_string(index + 1),
-                    {"shape", "x_mm", "y_mm", "width_mm", "turn_deg", "outline_mm", "height_mm"});
+  const SceneEntry entry(object, "Pillar " + std::to_string(index + 1),
+                         {"shape", "x_mm", "y_mm", "width_mm", "turn_deg", "outline_mm", "height_mm"});
   const double height_mm = entry.number("height_mm");
   if (entry.has("outline_mm")) {
     Pillar pillar{{}, height_mm};
@@ -145,28 +57,12 @@ Pillar read_pillar(const Json& object, std::size_t index) {
   return pillar_of(form, height_mm);
 }
 
-const Json& list_of(const Json& scene, const char* key) {
-  static const Json none = Json::array();
-  const auto found = scene.find(key);
-  if (found == scene.end()) return none;
-  if (!found->is_array()) refuse(std::string("The scene's ") + key + " must be a list.");
-  return *found;
-}
-
 }  // namespace
 
 ForestSceneFile read_forest_scene(ByteView bytes) {
-  const Json scene = parse_json_text(std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
-  if (!scene.is_object())
-    refuse("The scene is not a JSON object: it needs viewpoints and pillars, as docs/relief.md shows.");
-  for (const auto& [key, value] : scene.items())
-    if (key != "viewpoints" && key != "pillars")
-      refuse("The scene has \"" + key.substr(0, 40) + "\", which is not known; there are: viewpoints, pillars.");
-  const Json &viewpoints = list_of(scene, "viewpoints"), &pillars = list_of(scene, "pillars");
-  if (viewpoints.size() > static_cast<std::size_t>(max_viewpoints) ||
-      pillars.size() > static_cast<std::size_t>(max_pillars))
-    refuse("The scene may have at most " + std::to_string(max_viewpoints) + " viewpoints and " +
-           std::to_string(max_pillars) + " pillars.");
+  const Json scene = read_scene_object(bytes, {"viewpoints", "pillars"});
+  const Json& viewpoints = scene_list(scene, "viewpoints", static_cast<std::size_t>(max_viewpoints));
+  const Json& pillars = scene_list(scene, "pillars", static_cast<std::size_t>(max_pillars));
   ForestSceneFile file;
   for (std::size_t k = 0; k < viewpoints.size(); ++k) read_viewpoint(viewpoints[k], k, file);
   for (std::size_t k = 0; k < pillars.size(); ++k) file.scene.pillars.push_back(read_pillar(pillars[k], k));
@@ -177,12 +73,10 @@ Json forest_scene_json(const ForestSceneFile& file) {
   Json viewpoints = Json::array(), pillars = Json::array();
   for (std::size_t v = 0; v < file.scene.viewpoints.size(); ++v) {
     const ForestViewpoint& view = file.scene.viewpoints[v];
-    const ForestModelSource& source = file.models[v];
+    const SceneModelSource& source = file.models[v];
     Json one = {
         {"eye_mm", array_of(view.eye_mm)}, {"look_at_mm", array_of(view.look_at_mm)}, {"width_mm", view.width_mm}};
-    if (source.input_number > 0) one["model"] = source.input_number;
-    else one["sample"] = source.sample;
-    if (source.sample_vertices > 0) one["vertices"] = source.sample_vertices;
+    write_model_source(source, one);
     one["direction"] = view.direction;
     one["up"] = view.up;
     viewpoints.push_back(one);

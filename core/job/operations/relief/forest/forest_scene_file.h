@@ -1,22 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 // Scenes of pillars and viewpoints as JSON, and the one that is built in. docs/relief.md says what stands in the file.
-#include "base/bytes.h"
-#include "base/data/json.h"
+#include "job/contract/scene_entry.h"
 #include "relief/forest/plan/forest_scene.h"
 
 namespace formwright {
 
-/// The model of one viewpoint: a built-in sample, or an input of the job.
-struct ForestModelSource {
-  std::string sample;
-  int sample_vertices = 0;  // 0: the sample's default
-  int input_number = 0;     // 1 for "model", 2 for "model_2", ...; 0 for a sample
-};
-
 struct ForestSceneFile {
   ForestScene scene;
-  std::vector<ForestModelSource> models;  // of each viewpoint
+  std::vector<SceneModelSource> models;  // of each viewpoint
 };
 
 /// Throws Error{invalid_input, "scene"} in one sentence that names the viewpoint or pillar, counting from 1: no JSON, a

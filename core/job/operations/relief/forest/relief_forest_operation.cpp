@@ -19,7 +19,6 @@ namespace formwright {
 namespace {
 
 constexpr const char* scene_file = "scene";
-constexpr const char* model_file = "model";
 constexpr double low_share = 0.9;  // of a model that is seen, below which a note says so
 
 std::vector<InputInfo> forest_inputs() {
@@ -30,13 +29,7 @@ std::vector<InputInfo> forest_inputs() {
       "Viewpoints and pillars as JSON, such as the scene.json of an earlier run. Without one, four samples are seen from four sides.";
   scene.extensions = {"json"};
   scene.required = false;
-  InputInfo model = model_input_info();
-  model.name = model_file;
-  model.help = "A model that the scene refers to by its number: the first is 1.";
-  model.required = false;
-  model.accepts_sample = false;
-  model.repeatable = true;
-  return {scene, model};
+  return {scene, scene_models_info()};
 }
 
 std::vector<OutputInfo> forest_outputs() {
@@ -93,27 +86,6 @@ struct ForestInput {
   double seconds_read = 0;
 };
 
-std::string input_name(int number) {
-  return number == 1 ? model_file : std::string(model_file) + "_" + std::to_string(number);
-}
-
-std::shared_ptr<const LoadedModel> model_of(const OperationCall& call, const ForestModelSource& source,
-                                            std::size_t viewpoint) {
-  if (source.input_number > 0) {
-    const std::string name = input_name(source.input_number);
-    if (!call.inputs.contains(name))
-      throw Error(ErrorCode::invalid_input, scene_file,
-                  "Viewpoint " + std::to_string(viewpoint + 1) + " of the scene asks for model " +
-                      std::to_string(source.input_number) + ", which was not given: give it with --model.");
-    return load_model(call, name);
-  }
-  InputBlob blob;
-  blob.sample = source.sample;
-  blob.sample_vertices = source.sample_vertices;
-  const std::map<std::string, InputBlob> inputs{{model_file, blob}};
-  return load_model({inputs, call.wants, call.session, call.context}, model_file);
-}
-
 ForestInput read_forest(const OperationCall& call, const ForestOptions& options) {
   ForestInput input;
   const auto scene = call.inputs.find(scene_file);
@@ -123,7 +95,7 @@ ForestInput read_forest(const OperationCall& call, const ForestOptions& options)
   for (std::size_t v = 0; v < count; ++v) {
     const double begin = static_cast<double>(v) / static_cast<double>(count);
     const auto span = call.context.span(begin, begin + 1 / static_cast<double>(count), "Reading the models");
-    input.models.push_back(model_of(call, input.file.models[v], v));
+    input.models.push_back(load_scene_model(call, input.file.models[v], "Viewpoint " + std::to_string(v + 1)));
     input.seconds_read += input.models.back()->seconds_read + input.models.back()->seconds_repair;
   }
   return input;

@@ -157,6 +157,9 @@ void add_other_seeds() {
   save("forest_scene", "screens",
        "\x01"
        R"({"viewpoints":[{"eye_mm":[0,-600,60],"look_at_mm":[0,0,60],"width_mm":68,"model":1}]})");
+  save(
+      "model_scene", "two",
+      R"({"models":[{"sample":"cat","vertices":2000,"name":"Cat","size_mm":80,"turn_deg":[0,30,-5],"at_mm":[1.5,40,-20]},{"model":2}]})");
   save("png16", "red", test::red_pixel_png());
   save(
       "machine", "grbl",

@@ -6,6 +6,7 @@ namespace {
 
 constexpr double row_size_mm = 100, row_step_mm = 110;
 constexpr double max_length_mm = 1e6;
+constexpr std::size_t max_name_bytes = 200;
 
 Vec3 vector_of(const SceneEntry& entry, const char* key, double max_size) {
   if (!entry.has(key)) return {0, 0, 0};
@@ -21,6 +22,7 @@ PlacedModel read_model(const Json& object, std::size_t index) {
   PlacedModel model;
   model.source = read_model_source(entry);
   model.name = entry.has("name") ? entry.text("name") : model.source.name();
+  if (model.name.size() > max_name_bytes) entry.wrong("name", "text of at most 200 bytes");
   model.placement.size_mm = entry.number("size_mm", row_size_mm);
   if (!(model.placement.size_mm >= 0.01 && model.placement.size_mm <= max_length_mm))
     entry.wrong("size_mm", "between 0.01 and 1000000");

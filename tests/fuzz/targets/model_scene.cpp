@@ -16,8 +16,7 @@ Positions tetrahedron() {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {
-    const std::vector<PlacedModel> models =
-        read_model_scene(ByteView(reinterpret_cast<const std::byte*>(data), size));
+    const std::vector<PlacedModel> models = read_model_scene(ByteView(reinterpret_cast<const std::byte*>(data), size));
     const std::string written = model_scene_json(models).dump();
     const std::vector<PlacedModel> again = read_model_scene(as_bytes(written));
     fuzz::check(again.size() == models.size());

@@ -51,6 +51,11 @@ export function linkTo(document: ProjectDocument, catalog: Catalog, here: string
         reason: 'for samples only',
         sentence: `A link holds settings and the name of a built-in sample. ${model.source.file_name} is a file of your own, which is not sent anywhere. A project file has it in it.`,
       };
+    if (model.source.kind === 'group')
+      return {
+        reason: 'for single samples only',
+        sentence: `A link holds settings and the name of a built-in sample, and ${model.source.title} are several models. A project file has them in it.`,
+      };
     // A machine profile has defaults of its own; the link is opened without it.
     const inUse = withProfile(operation, profile);
     const names = Object.keys(operation.parameters.properties);

@@ -24,6 +24,7 @@ import { printInPlastic } from '../../shared/print/print_request';
 import { outputOf } from '../../shared/session/full_solve';
 import { howMadeItem } from '../../shared/session/how_made';
 import { BaseFile } from './base_file';
+import { GroupList } from './group/group_list';
 import type { ReliefSession } from './relief_session';
 import type { SendToMill } from './send_relief';
 import { sendRelief } from './send_relief';
@@ -56,6 +57,7 @@ export function Inspector(props: InspectorProps) {
     <>
       <div class="inspector-scroll" tabIndex={-1}>
         <ModelRow session={session} picture={picture} onReplace={onReplace} />
+        <GroupList session={session} />
         {mode.value === 'light' ? <LightPanel session={session} /> : null}
         <ParameterPanel
           operation={shown}

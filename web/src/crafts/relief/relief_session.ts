@@ -17,6 +17,7 @@ import { RoomSession } from '../../shared/session/room_session';
 import type { Services } from '../../shared/session/services';
 import type { Viewpoint } from '../../view';
 import { ForestSession } from './forest/forest_session';
+import { ModelGroup } from './group/model_group';
 import { ReliefLight } from './light/relief_light';
 import { baseOf, parametersOf } from './meshes';
 import type { ReliefDocument } from './relief_document';
@@ -45,6 +46,8 @@ export class ReliefSession extends RoomSession<ReliefDocument> {
     furtherInputs: computed(() => baseInputs(this.document.value)),
     forgets: (name) => this.operation.value?.parameters.properties[name]?.['x-group'] === 'Viewpoint',
   });
+  /** Several models in one relief. */
+  readonly group: ModelGroup;
   /** Several models on free-standing pillars: a view of this room with a document of its own. */
   readonly forest: ForestSession;
   readonly hasWork = computed(() => this.model.isThere.value || this.forest.open.value);
@@ -64,6 +67,7 @@ export class ReliefSession extends RoomSession<ReliefDocument> {
   constructor(services: Services) {
     super(services, relief);
     this.forest = new ForestSession(services);
+    this.group = new ModelGroup(this);
     effect(() => {
       this.forest.active.value = this.active.value && this.forest.open.value;
     });
@@ -72,7 +76,18 @@ export class ReliefSession extends RoomSession<ReliefDocument> {
   }
 
   openFiles(files: readonly File[]): Promise<boolean> {
-    return this.forest.open.value ? this.forest.openFiles(files) : this.model.openFiles(files);
+    return this.forest.open.value ? this.forest.openFiles(files) : this.#openModels(files);
+  }
+
+  /** Of several models dropped at once, the first is opened and the others are put beside it. */
+  async #openModels(files: readonly File[]): Promise<boolean> {
+    const models = this.model.modelsAmong(files);
+    if (models.length < 2 || !this.group.available.value) return await this.model.openFiles(files);
+    const [first, ...others] = models;
+    const companions = files.filter((file) => !models.includes(file));
+    if (first === undefined || !(await this.model.openFile({ model: first, companions }))) return false;
+    for (const other of others) await this.group.addFile(other);
+    return true;
   }
 
   get title(): string {

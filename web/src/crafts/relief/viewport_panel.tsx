@@ -2,7 +2,7 @@
 // The viewport with what floats over it: view modes, light, side view, legend, notes.
 import { effect, signal, useSignal } from '@preact/signals';
 import type { ComponentChildren } from 'preact';
-import { useEffect, useRef } from 'preact/hooks';
+import { useEffect, useMemo, useRef } from 'preact/hooks';
 import { Icon, Segmented } from '../../ui';
 import type { Insets, LightDirection, Plate, ViewMode } from '../../view';
 import { LightBall, SideInset, Viewport } from '../../view';
@@ -11,6 +11,9 @@ import { narrow } from '../../shared/panels/narrow';
 import { figure } from '../../shared/session/report';
 import { originalData, scaled } from '../../shared/panels/shaded_mesh';
 import { ForestButton } from './forest/forest_button';
+import type { GripElements } from './group/group_handles';
+import { GroupHandles } from './group/group_handles';
+import { GroupMover } from './group/group_mover';
 import { brightnessMapping } from './light/light_values';
 import { errorMapping, errorOf, litData, plateOf, reliefData, viewpointOf } from './meshes';
 import type { ReliefSession } from './relief_session';
@@ -55,6 +58,9 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
   const ball = useRef<HTMLDivElement>(null);
   const side = useRef<HTMLDivElement>(null);
   const foot = useRef<HTMLDivElement>(null);
+  const made = useRef<Viewport | null>(null);
+  const mover = useMemo(() => new GroupMover(session), [session]);
+  const grips = useMemo((): GripElements => ({}), []);
   /** The view says itself why it cannot draw; what belongs to a picture goes away. */
   const drawing = useSignal(true);
   const isNarrow = useSignal(narrow());
@@ -71,7 +77,13 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
         if (followCamera.value && !at) session.setViewpoint(camera, 'viewpoint');
       },
       onStatus: ({ state }) => (drawing.value = state === 'ready'),
+      onPointer: ({ kind, hit }) => {
+        if (kind === 'click' && hit?.part === 'original' && mode.value === 'original')
+          mover.choose(hit.triangle);
+      },
+      onFrame: () => mover.placeHandles(viewport, grips, mode.peek() === 'original'),
     });
+    made.current = viewport;
     const lightBall = new LightBall(light.value, (chosen) => {
       light.value = chosen;
       viewport.setLight(chosen);
@@ -82,6 +94,11 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
     side.current?.append(inset.element);
     const stop = [
       effect(() => followOnly(session)),
+      effect(() => {
+        void [mover.model.value, session.drawnScale.value];
+        const there = mode.value === 'original';
+        requestAnimationFrame(() => mover.placeHandles(viewport, grips, there));
+      }),
       effect(() => {
         session.light.open.value = mode.value === 'light';
         viewport.setColourMapping(mode.value === 'light' ? brightnessMapping : errorMapping);
@@ -102,6 +119,7 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
     return () => {
       session.light.open.value = false;
       onViewport(null);
+      made.current = null;
       resize.disconnect();
       for (const end of stop) end();
       inset.dispose();
@@ -131,6 +149,9 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
           />
           <ForestButton session={session} />
         </div>
+      ) : null}
+      {session.group.models.value && mode.value === 'original' && drawing.value ? (
+        <GroupHandles mover={mover} viewport={() => made.current} elements={grips} />
       ) : null}
       <div ref={foot} class="float bottom-left foot">
         {mode.value === 'error' && shown ? (

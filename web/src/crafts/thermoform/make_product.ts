@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Prints and moulds of a formed sheet: what is not made yet is made, the sheet first where that is missing.
 import type { JobInput, Operation } from '../../jobs/contract';
-import type { Source } from '../../shared/session/craft_document';
+import type { CraftModel, Source } from '../../shared/session/craft_document';
 import { meshInput } from '../../shared/session/craft_document';
 import { outputOf, solveInFull } from '../../shared/session/full_solve';
 import { profileInputs } from '../../shared/session/machine_profile';
@@ -10,10 +10,12 @@ import { printing, simulate } from './thermoform_document';
 import type { ThermoformSession } from './thermoform_session';
 
 /** The model's own file keeps what the repaired mesh lost: coordinates of its picture. */
-export const sourceInput = (source: Source): JobInput =>
-  source.kind === 'sample'
-    ? { sample: source.sample }
-    : { sha256: source.file.blob, file_name: source.file_name };
+export function sourceInput({ source, mesh }: CraftModel): JobInput {
+  if (source.kind === 'sample') return { sample: source.sample };
+  return source.kind === 'file'
+    ? { sha256: source.file.blob, file_name: source.file_name }
+    : meshInput(mesh, 'model.ply');
+}
 
 /** Materials and pictures that came with the model, for the inputs that take such files. */
 export function companionInputs(operation: Operation, source: Source): Record<string, JobInput> {
@@ -47,7 +49,7 @@ export async function bytesToSave(
   const sheet = session.result.value.outputs['sheet.ply'];
   const takesSheet = operation.inputs.some(({ name }) => name === 'sheet');
   const inputs = {
-    mould: operationName === printing ? sourceInput(model.source) : meshInput(model.mesh, 'model.ply'),
+    mould: operationName === printing ? sourceInput(model) : meshInput(model.mesh, 'model.ply'),
     ...(sheet && takesSheet ? { sheet: meshInput(sheet, 'sheet.ply') } : {}),
     ...companionInputs(operation, model.source),
     ...profileInputs(session.profile.value),

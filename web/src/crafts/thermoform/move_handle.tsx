@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import type { RefObject } from 'preact';
 import { hideTip, Icon, tipHandlers } from '../../ui';
+import '../../shared/panels/move_handle.css';
 import type { Viewport } from '../../view';
 import type { ModelMover } from './move_model';
 import type { ThermoformSession } from './thermoform_session';

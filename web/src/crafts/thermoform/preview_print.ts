@@ -21,7 +21,7 @@ export async function previewPrint(session: ThermoformSession, of: Formed): Prom
     parameters: known(operation, of.parameters),
     inputs: {
       ...companionInputs(operation, model.source),
-      mould: sourceInput(model.source),
+      mould: sourceInput(model),
       sheet: { sha256: sheet, file_name: 'sheet.ply' },
       ...profileInputs(session.profile.peek()),
     },

@@ -11,14 +11,41 @@ export interface Companion {
   readonly file: BlobReference;
 }
 
-export type Source =
-  | {
-      readonly kind: 'file';
-      readonly file_name: string;
-      readonly file: BlobReference;
-      readonly companions?: readonly Companion[];
-    }
-  | { readonly kind: 'sample'; readonly sample: string; readonly title: string };
+export interface FileSource {
+  readonly kind: 'file';
+  readonly file_name: string;
+  readonly file: BlobReference;
+  readonly companions?: readonly Companion[];
+}
+
+export interface SampleSource {
+  readonly kind: 'sample';
+  readonly sample: string;
+  readonly title: string;
+}
+
+export type SingleSource = FileSource | SampleSource;
+
+/** One of several models, as the operation `combine` puts it to its place. */
+export interface PlacedModel {
+  readonly source: SingleSource;
+  readonly name: string;
+  /** The longest side of its box, before it is turned. */
+  readonly size_mm: number;
+  /** About x first, then y, then z. */
+  readonly turn_deg: readonly [number, number, number];
+  /** The middle of its box as it stands. */
+  readonly at_mm: readonly [number, number, number];
+}
+
+/** Several models made one. */
+export interface GroupSource {
+  readonly kind: 'group';
+  readonly title: string;
+  readonly models: readonly PlacedModel[];
+}
+
+export type Source = SingleSource | GroupSource;
 
 export interface CraftModel {
   readonly source: Source;
@@ -153,6 +180,14 @@ export class CraftCommands<D extends CraftDocument> extends RoomCommands<D> {
         parameters: withoutDefaults(operation, { ...kept, ...own }),
       };
       return opened;
+    });
+  }
+
+  /** The same model, otherwise placed or with more beside it. */
+  changeModel(model: CraftModel, label: string, values: JsonObject = {}) {
+    return this.command({ label }, ({ parameters }) => {
+      const changed: Partial<CraftDocument> = { model, parameters: { ...parameters, ...values } };
+      return changed;
     });
   }
 }

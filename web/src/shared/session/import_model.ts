@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // From a file or a sample to a repaired model with its small stand-in for previews.
 import type { Backend, Result, RunOptions } from '../../jobs/backend';
-import type { Job } from '../../jobs/contract';
+import type { Job, JobInput, Report } from '../../jobs/contract';
 import { asJobError, JobError } from '../../jobs/contract';
 import { onlyPicture } from '../../jobs/glb';
 import { plyPictures } from '../../jobs/ply';
@@ -9,7 +9,7 @@ import type { BlobStore } from '../../project/blob_store';
 import type { BlobReference } from '../../project/document';
 import { storageSentence } from '../../project/storage';
 import { toast } from '../../ui';
-import type { CraftModel, Source } from './craft_document';
+import type { CraftModel, GroupSource, SingleSource, Source } from './craft_document';
 import { meshInput } from './craft_document';
 import { figure } from './report';
 
@@ -24,15 +24,15 @@ export async function importModel(
   source: Source,
   options: RunOptions,
 ): Promise<CraftModel> {
-  const input =
-    source.kind === 'sample'
-      ? { sample: source.sample }
-      : { sha256: source.file.blob, file_name: source.file_name };
-  const job = { operation: 'import', parameters: {}, inputs: { mesh: input }, outputs: ['model.ply'] };
+  const job =
+    source.kind === 'group'
+      ? await combineJob(blobs, source)
+      : { operation: 'import', parameters: {}, inputs: { mesh: inputOf(source) }, outputs: ['model.ply'] };
   const { report, outputs } = await backend.run(job, options);
   const bytes = await bytesOf({ report, outputs }, 'model.ply');
   const mesh = await keep(blobs, bytes, ply);
-  const picture = await ownPicture(backend, blobs, source, bytes, job, options);
+  const picture =
+    source.kind === 'group' ? null : await ownPicture(backend, blobs, source, bytes, job, options);
   const model = { source, mesh, report, ...(picture ? { picture } : {}) };
   if ((figure(report, 'vertices') ?? 0) <= previewVertices) return { ...model, preview: mesh };
   const simplify = {
@@ -44,6 +44,43 @@ export async function importModel(
   const simplified = await backend.run(simplify, options);
   const preview = await keep(blobs, await bytesOf(simplified, 'simplified.ply'), ply);
   return { ...model, preview };
+}
+
+const inputOf = (source: SingleSource): JobInput =>
+  source.kind === 'sample'
+    ? { sample: source.sample }
+    : { sha256: source.file.blob, file_name: source.file_name };
+
+/** What `import` says of a model, its size above all. */
+export async function importedReport(
+  backend: Backend,
+  source: SingleSource,
+  options: RunOptions,
+): Promise<Report> {
+  const job = { operation: 'import', parameters: {}, inputs: { mesh: inputOf(source) }, outputs: [] };
+  return (await backend.run(job, options)).report;
+}
+
+/** The scene of several models as the operation `combine` reads it; each file is given once. */
+async function combineJob(blobs: BlobStore, { models }: GroupSource): Promise<Job> {
+  const files = [
+    ...new Map(
+      models.flatMap(({ source }) => (source.kind === 'file' ? [[source.file.blob, source] as const] : [])),
+    ),
+  ];
+  const scene = models.map(({ source, ...placed }) => ({
+    ...placed,
+    ...(source.kind === 'sample'
+      ? { sample: source.sample }
+      : { model: files.findIndex(([blob]) => blob === source.file.blob) + 1 }),
+  }));
+  const bytes = new TextEncoder().encode(JSON.stringify({ models: scene }));
+  const inputs: Record<string, JobInput> = {
+    scene: { sha256: await blobs.hold(bytes), file_name: 'scene.json' },
+  };
+  for (const [i, [, source]] of files.entries())
+    inputs[i === 0 ? 'model' : `model_${i + 1}`] = inputOf(source);
+  return { operation: 'combine', parameters: {}, inputs, outputs: ['model.ply'] };
 }
 
 const isPicture = (file_name: string): boolean => /\.(png|jpe?g)$/i.test(file_name);

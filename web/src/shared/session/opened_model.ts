@@ -23,11 +23,14 @@ export interface ChosenFiles {
   readonly companions?: readonly File[];
 }
 
+function modelsAmong(files: readonly File[], catalog: Catalog | null): File[] {
+  const extensions = (catalog?.mesh_formats ?? []).map(({ extension }) => `.${extension}`);
+  return files.filter(({ name }) => extensions.some((ending) => name.toLowerCase().endsWith(ending)));
+}
+
 /** Which of several files dropped together is the model; the others are its materials and pictures. */
 function chooseModel(files: readonly File[], catalog: Catalog | null): ChosenFiles | null {
-  const extensions = (catalog?.mesh_formats ?? []).map(({ extension }) => `.${extension}`);
-  const isModel = ({ name }: File) => extensions.some((ending) => name.toLowerCase().endsWith(ending));
-  const model = files.find(isModel) ?? files[0];
+  const model = modelsAmong(files, catalog)[0] ?? files[0];
   return model ? { model, companions: files.filter((file) => file !== model) } : null;
 }
 
@@ -74,6 +77,11 @@ export class OpenedModel<D extends CraftDocument = CraftDocument> {
     return subjectOf(mesh, this.#rules.inputName, this.#rules.furtherInputs?.value ?? {});
   }
 
+  /** Those whose names say that they are models. */
+  modelsAmong(files: readonly File[]): File[] {
+    return modelsAmong(files, this.#room.services.catalog.value);
+  }
+
   async openFiles(files: readonly File[]): Promise<boolean> {
     const chosen = chooseModel(files, this.#room.services.catalog.value);
     return chosen !== null && (await this.openFile(chosen));
@@ -105,6 +113,15 @@ export class OpenedModel<D extends CraftDocument = CraftDocument> {
     if (operation === null) return;
     const { projects } = this.#room.services;
     projects.do(this.#openCommand(operation, model, titleOf(model.source)));
+    projects.commit();
+  }
+
+  /** The same model changed: its viewpoint and everything else stay. */
+  async change(source: Source, label: string, signal: AbortSignal, values: JsonObject = {}): Promise<void> {
+    const change = this.#room.changesHere();
+    const { browser, projects } = this.#room.services;
+    const model = await importModel(browser, projects.blobs, source, { signal });
+    change(this.#rules.commands.changeModel(model, label, values));
     projects.commit();
   }
 

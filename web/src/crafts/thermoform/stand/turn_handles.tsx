@@ -2,6 +2,7 @@
 // The handles on the rings: dragged, or turned with the arrow keys.
 import { effect } from '@preact/signals';
 import { formatOnStep, hideTip, Icon, tipHandlers, withUnit } from '../../../ui';
+import '../../../shared/panels/move_handle.css';
 import type { Curve, Viewport } from '../../../view';
 import type { ThermoformSession } from '../thermoform_session';
 import type { Handle } from './ring';

@@ -8,6 +8,7 @@ import { figuresOf } from '../plan';
 import type { Scene } from '../scene';
 import { addPillar, addViewpoint } from '../scene';
 import { ViewpointFields } from './viewpoint_fields';
+import '../../scene_fields.css';
 import { colourOf, isChosen, modelName, shapeName } from '../views';
 
 export interface SceneListProps {

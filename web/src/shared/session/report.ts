@@ -23,9 +23,7 @@ export function sentences(report: Report, name: string): string[] {
 export function modelLine(report: Report): string {
   const faces = figure(report, 'faces');
   const parts = figure(report, 'components');
-  const models = report['models'];
   const words = faces === null ? [] : [`${formatCount(faces)} ${faces === 1 ? 'triangle' : 'triangles'}`];
-  if (Array.isArray(models)) words.push(`${formatCount(models.length)} models`);
   if (parts !== null) words.push(`${formatCount(parts)} ${parts === 1 ? 'part' : 'parts'}`);
   return words.join(', ');
 }

@@ -49,7 +49,7 @@ export function GroupHandles({ mover, viewport, elements }: GroupHandlesProps) {
             key={grip}
             ref={(element) => void (elements[grip] = element)}
             type="button"
-            class={`move-handle group-handle ${mover.grip.value === grip ? 'held' : ''}`}
+            class={`move-handle group-handle ${grip} ${mover.grip.value === grip ? 'held' : ''}`}
             hidden
             aria-label={`${label}. ${keys}.`}
             {...tipHandlers(`${label}: drag, or ${keys.charAt(0).toLowerCase()}${keys.slice(1)}`)}

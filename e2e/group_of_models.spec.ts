@@ -6,8 +6,7 @@ import { ballObj, expect, expectAccessible, fileOf, openSampleIn, readStl, solve
 
 const field = (page: Page, name: string) => page.getByRole('textbox', { name, exact: true });
 const models = (page: Page) => page.getByRole('region', { name: 'Models', exact: true });
-const previewed = (page: Page) =>
-  expect(strip(page, 'Preview up to date')).toBeVisible({ timeout: 120_000 });
+const previewed = (page: Page) => expect(strip(page, 'Preview up to date')).toBeVisible({ timeout: 120_000 });
 const value = (page: Page, name: string) => field(page, name).inputValue();
 
 async function add(page: Page, name: string): Promise<void> {
@@ -69,7 +68,9 @@ test('several models become one relief', async ({ page }) => {
   await expect(models(page).getByRole('heading', { name: '2 models' })).toBeVisible();
 });
 
-test('files dropped together stand side by side; a file that is no model changes nothing', async ({ page }) => {
+test('files dropped together stand side by side; a file that is no model changes nothing', async ({
+  page,
+}) => {
   test.setTimeout(180_000);
   await openSampleIn(page, 'Relief', 'Star');
   await previewed(page);

@@ -11,14 +11,14 @@ export interface Companion {
   readonly file: BlobReference;
 }
 
-export interface FileSource {
+interface FileSource {
   readonly kind: 'file';
   readonly file_name: string;
   readonly file: BlobReference;
   readonly companions?: readonly Companion[];
 }
 
-export interface SampleSource {
+interface SampleSource {
   readonly kind: 'sample';
   readonly sample: string;
   readonly title: string;

@@ -4,7 +4,7 @@ import { hideTip, Icon, tipHandlers } from '../../../ui';
 import '../../../shared/panels/move_handle.css';
 import './group_handles.css';
 import type { Viewport } from '../../../view';
-import type { Grip } from './hold';
+import type { Grip, GripElements } from './hold';
 import { grips } from './hold';
 import type { GroupMover } from './group_mover';
 
@@ -24,8 +24,6 @@ const words: Readonly<Record<Grip, GripWords>> = {
   turn: { action: 'Turn', keys: 'Left and right arrow keys: 15°, with Shift 1°', icon: 'turn' },
   size: { action: 'Change the size of', keys: 'Up and down arrow keys: 5 %, with Shift 1 %', icon: 'frame' },
 };
-
-export type GripElements = Partial<Record<Grip, HTMLElement | null>>;
 
 export interface GroupHandlesProps {
   readonly mover: GroupMover;

@@ -7,6 +7,9 @@ import { along, turnedBy } from './placement';
 export type Grip = 'move' | 'depth' | 'turn' | 'size';
 export const grips: readonly Grip[] = ['move', 'depth', 'turn', 'size'];
 
+/** Their buttons over the picture. */
+export type GripElements = Partial<Record<Grip, HTMLElement | null>>;
+
 const degreesAPixel = 0.5;
 const turnStep_deg = 5;
 const keyTurn_deg = 15;

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Builds the fuzz targets (tests/fuzz) with libFuzzer and runs each for FUZZ_SECONDS (60), at the lowest priority.
+# Builds the fuzz targets (tests/fuzz) with libFuzzer and runs each for FUZZ_SECONDS (60) of processor time, at the lowest priority.
 #   FUZZ_SECONDS=600 setup/fuzz.sh [obj stl ply glb ...]   all targets, or these
 #   setup/fuzz.sh --table                                  what all runs so far came to, by target
 # New inputs stay in the cache folder, where the next run begins; so do the logs of which --table adds up the figures.
-# FUZZ_JOBS targets run beside each other (1). The seconds in the table are processor time.
+# FUZZ_JOBS targets run beside each other (1). Nothing runs for more than FUZZ_MAX_WAIT (30) times as long by the clock.
 # What it finds stays in build-fuzz/findings; each target goes on after a finding until its time is up or it has found ten.
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
@@ -51,30 +51,36 @@ else
 fi
 [ ${#targets[@]} -gt 0 ] || fail "no fuzz target was built" "name its CMake target fuzz_<what>"
 
+# Sets `used` to the processor seconds of this shell's children that have ended: "1m2.345s 0m1.234s" in the second line. A pipe
+# would be another shell.
+measure_used() {  # a file to write into
+  times >"$1"
+  used=$(awk -F'[ms ]+' 'NR == 2 { printf "%d", $1 * 60 + $2 + $3 * 60 + $4 }' "$1")
+  rm "$1"
+}
+
 # Runs one target until its time is up; "found" in its log counts what it was restarted for.
 fuzz_one() {  # name
-  local name="$1" begin=$SECONDS end found=0
+  local name="$1" begin=$SECONDS seconds="${FUZZ_SECONDS:-60}" end found=0 used=0 code
   local dictionary="tests/fuzz/dictionaries/$name.dict" log="$logs/$name.log"
-  end=$((begin + ${FUZZ_SECONDS:-60}))
+  end=$((begin + seconds * ${FUZZ_MAX_WAIT:-30}))
   mkdir -p "$corpus/$name" "build-fuzz/seeds/$name"
-  # The memory of one input is counted by the target itself (fuzz_entry.cpp); these limits end what runs away.
-  local options=(-max_len=1048576 -timeout=10 -rss_limit_mb=2048 -malloc_limit_mb=1024 -print_final_stats=1)
+  # Memory and processor time of one input are counted by the target itself (fuzz_entry.cpp); these limits end what runs away.
+  local options=(-max_len=1048576 -timeout=300 -rss_limit_mb=2048 -malloc_limit_mb=1024 -print_final_stats=1)
   [ ! -f "$dictionary" ] || options+=(-dict="$dictionary")
   local folders=("$corpus/$name" "build-fuzz/seeds/$name")
   [ ! -d "tests/fuzz/found/$name" ] || folders+=("tests/fuzz/found/$name")
-  while [ $SECONDS -lt $end ] && [ $found -lt 10 ]; do
-    if nice -n "${FUZZ_NICE:-19}" "build-fuzz/tests/fuzz/fuzz_$name" "${options[@]}" -max_total_time=$((end - SECONDS)) \
-      -artifact_prefix="$findings/$name-" "${folders[@]}" >>"$log" 2>&1; then
-      break
-    fi
+  while [ $SECONDS -lt $end ] && [ $found -lt 10 ] && [ $used -lt "$seconds" ]; do
+    code=0
+    FORMWRIGHT_FUZZ_SECONDS=$((seconds - used)) nice -n "${FUZZ_NICE:-19}" "build-fuzz/tests/fuzz/fuzz_$name" \
+      "${options[@]}" -max_total_time=$((end - SECONDS)) -artifact_prefix="$findings/$name-" "${folders[@]}" >>"$log" 2>&1 || code=$?
+    measure_used "$log.times"
+    case $code in 0 | 72) break ;; esac  # 72: its processor time was over
     found=$((found + 1))
     grep -E '^SUMMARY|Test unit written' "$log" | tail -n 2 >&2
   done
-  # Of this subshell's children, user and system time: "1m2.345s 0m1.234s" in the second line. A pipe would be another subshell.
-  times >"$log.times"
-  awk -F'[ms ]+' 'NR == 2 { printf "stat::seconds: %d\n", $1 * 60 + $2 + $3 * 60 + $4 }' "$log.times" >>"$log"
-  rm "$log.times"
-  printf '%s: %d s, %d inputs kept, %d findings\n' "$name" $((SECONDS - begin)) "$(find "$corpus/$name" -type f | wc -l)" "$found"
+  printf 'stat::seconds: %d\n' "$used" >>"$log"
+  printf '%s: %d s of processor time in %d s, %d inputs kept, %d findings\n' "$name" "$used" $((SECONDS - begin)) "$(find "$corpus/$name" -type f | wc -l)" "$found"
   [ $found -eq 0 ]
 }
 

@@ -16,7 +16,7 @@ const keyTurn_deg = 15;
 const keyStep_mm = 5;
 const keyFactor = 1.05;
 const fineKeyFactor = 1.01;
-export const minSize_mm = 1;
+const minSize_mm = 1;
 export const maxSize_mm = 10_000;
 
 const tidy = (value: number): number => Number(value.toFixed(2)) + 0;

@@ -35,7 +35,7 @@ export type GroupRoom = RoomSession<ReliefDocument> & { readonly model: OpenedMo
 const nameOf = (source: SingleSource): string => titleOf(source).replace(/\.[^.]+$/, '');
 
 /** "Cat and Bust", "Cat, Bust and 3 more". */
-export function groupTitle(models: readonly PlacedModel[]): string {
+function groupTitle(models: readonly PlacedModel[]): string {
   const names = models.map(({ name }) => name);
   const [first = 'Models', second] = names;
   if (second === undefined) return first;

@@ -8,7 +8,7 @@ export type Matrix = readonly [Triple, Triple, Triple];
 
 const degree = Math.PI / 180;
 
-export const dot = (a: Triple, b: Triple): number => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+const dot = (a: Triple, b: Triple): number => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 export const along = (p: Triple, a: Triple, by: number): Triple => [
   p[0] + by * a[0],
   p[1] + by * a[1],

@@ -126,6 +126,19 @@ test('viewpoints and pillars are added, changed in numbers and taken away', asyn
   await page.getByRole('combobox', { name: 'Shape', exact: true }).first().selectOption('Hexagonal');
   await set(page, 'Width of the pillar', '20');
   await expect(pillar(page, 24)).toHaveAccessibleName(/hexagonal/);
+  // An outline of its own: corners are moved, added and taken away.
+  await page.getByRole('combobox', { name: 'Shape', exact: true }).first().selectOption('Own outline');
+  await expect(pillar(page, 24)).toHaveAccessibleName(/own outline/);
+  const corner = (number: number) =>
+    plan(page).getByRole('button', { name: new RegExp(`^Pillar 24, corner ${number}, `) });
+  const where = await corner(2).getAttribute('aria-label');
+  await corner(2).focus();
+  await page.keyboard.press('Shift+ArrowUp');
+  await expect(corner(2)).not.toHaveAccessibleName(where ?? '');
+  await plan(page).getByRole('button', { name: 'Pillar 24, add a corner between 2 and 3' }).press('Enter');
+  await expect(corner(7)).toBeVisible();
+  await corner(7).press('Delete');
+  await expect(corner(7)).toHaveCount(0);
   await page.getByRole('button', { name: 'Delete pillar 24' }).click();
   await expect(page.getByRole('heading', { name: '23 pillars' })).toBeVisible();
 

@@ -119,8 +119,8 @@ PageLayout page_layout(const ThermoformPrintOptions& options) {
 }
 
 Bytes write_print_pdf(const Image& picture, const PrintGrid& grid, const PageLayout& layout,
-                      const ThermoformPrintOptions& options, Context& context) {
-  PdfDocument pdf("Thermoforming print");
+                      const ThermoformPrintOptions& options, std::string_view title, Context& context) {
+  PdfDocument pdf{std::string(title)};
   const int stored = pdf.add_picture(picture);
   context.check_cancelled();
   const Vec2 half(options.sheet_x_mm / 2, options.sheet_y_mm / 2), page(layout.width_mm, layout.height_mm);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 // The print and the frame's template on paper: one page where it fits, several to be joined where it does not.
+#include <string_view>
+
 #include "base/bytes.h"
 #include "thermoform/print/print_marks.h"
 #include "thermoform/print/print_render.h"
@@ -30,9 +32,9 @@ PageLayout page_layout(const ThermoformPrintOptions& options);
 
 /// All tiles of `picture` (the print without marks, not mirrored), then those of the frame's template where marks are
 /// asked for. Lines and words are vectors. Everything is drawn options.sent_scale() times as large, about the middle of
-/// the page; paper of the sheet's size is, too.
+/// the page; paper of the sheet's size is, too. `title`: what a viewer shows above the document.
 Bytes write_print_pdf(const Image& picture, const PrintGrid& grid, const PageLayout& layout,
-                      const ThermoformPrintOptions& options, Context& context);
+                      const ThermoformPrintOptions& options, std::string_view title, Context& context);
 
 /// Pixels per metre for the picture's file, rounded: the printer makes each (1 + print_scale) times as large as the
 /// file says.

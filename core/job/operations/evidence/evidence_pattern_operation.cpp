@@ -117,7 +117,7 @@ OperationResult run_pattern(const OperationCall& call, const EvidencePatternOpti
     context.check_cancelled();
   };
   add("pattern.png", [&] { return write_png(with_marks(picture, grid, print), grid.per_metre, context); });
-  add("pattern.pdf", [&] { return write_print_pdf(picture, grid, layout, print, context); });
+  add("pattern.pdf", [&] { return write_print_pdf(picture, grid, layout, print, "Calibration pattern", context); });
   add("pattern.json", [&] { return to_bytes(calibration_pattern_json(pattern).dump(1) + "\n"); });
   report["seconds_write"] = watch.seconds();
   report["peak_memory_mb"] = context.peak_memory_mb();

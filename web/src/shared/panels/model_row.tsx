@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-import { Button } from '../../ui';
+import { Button, Icon, Menu } from '../../ui';
 import type { CraftDocument } from '../session/craft_document';
 import { titleOf } from '../session/craft_document';
 import type { ModelRoom } from '../session/opened_model';
@@ -16,6 +16,7 @@ export function ModelRow<D extends CraftDocument>({ session, picture, onReplace 
   const { model } = session.document.value;
   if (model === null) return null;
   const repairs = sentences(model.report, 'repairs').length;
+  const elsewhere = session.model.elsewhere.value.filter(({ mesh }) => mesh.blob !== model.mesh.blob);
   return (
     <div class="model-row">
       <span
@@ -32,7 +33,25 @@ export function ModelRow<D extends CraftDocument>({ session, picture, onReplace 
           </button>
         ) : null}
       </div>
-      <Button onClick={onReplace}>Replace</Button>
+      {elsewhere.length > 0 ? (
+        <Menu
+          buttonClass="button outlined normal"
+          align="right"
+          items={[
+            ...elsewhere.map((other) => ({
+              label: titleOf(other.source),
+              hint: 'Open in this project',
+              onSelect: () => session.model.take(other),
+            })),
+            { label: 'Another model', icon: 'upload', onSelect: onReplace },
+          ]}
+        >
+          Replace
+          <Icon name="chevronDown" small />
+        </Menu>
+      ) : (
+        <Button onClick={onReplace}>Replace</Button>
+      )}
     </div>
   );
 }

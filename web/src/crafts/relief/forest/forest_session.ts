@@ -184,6 +184,7 @@ export class ForestSession extends RoomSession<ForestDocument> {
   }
 
   async make(): Promise<void> {
+    this.#nameProject();
     await this.#ready();
     await solveInFull(this);
   }
@@ -330,9 +331,9 @@ export class ForestSession extends RoomSession<ForestDocument> {
   }
 
   #nameProject(change: Change = (command) => this.services.projects.do(command)): void {
-    const { projects } = this.services;
-    if (projects.isBlank.value && projects.document.value.name === 'New project')
-      change(nameProject(projectTitle));
+    const { name, crafts } = this.services.projects.document.value;
+    const isAlone = Object.keys(crafts).every((craft) => craft === forest.craft);
+    if (isAlone && name === 'New project') change(nameProject(projectTitle));
   }
 
   // ---- what every room does ----

@@ -122,6 +122,48 @@ export function shapedPillar(pillar: Pillar, shape: Shape): Pillar {
   };
 }
 
+/** Corners of a circle that is changed by hand. */
+const roundCorners = 16;
+
+/** With an outline of its own, for now the one that it has. */
+export function outlinedPillar(pillar: Pillar): Pillar {
+  if (!isShaped(pillar)) return pillar;
+  const { shape, x_mm, y_mm, width_mm, turn_deg = 0, height_mm } = pillar;
+  const count = { round: roundCorners, square: 4, hexagon: 6 }[shape];
+  const radius = (shape === 'square' ? Math.SQRT1_2 : 0.5) * width_mm;
+  const first_deg = turn_deg + (shape === 'square' ? 45 : 0);
+  const outline_mm = Array.from({ length: count }, (_, k): Place => {
+    const angle = ((first_deg + (360 * k) / count) * Math.PI) / 180;
+    return [rounded(x_mm + radius * Math.cos(angle)), rounded(y_mm + radius * Math.sin(angle))];
+  });
+  return { outline_mm, height_mm };
+}
+
+export const cornersOf = (pillar: Pillar): readonly Place[] => (isShaped(pillar) ? [] : pillar.outline_mm);
+
+export const movedCorner = (pillar: Pillar, corner: number, [x, y]: Place): Pillar =>
+  isShaped(pillar)
+    ? pillar
+    : { ...pillar, outline_mm: replaced(pillar.outline_mm, corner, () => [rounded(x), rounded(y)]) };
+
+/** In the middle of the side that begins at this corner. */
+export function addedCorner(pillar: Pillar, corner: number): Pillar {
+  if (isShaped(pillar)) return pillar;
+  const { outline_mm } = pillar;
+  return { ...pillar, outline_mm: outline_mm.toSpliced(corner + 1, 0, middleOfSide(outline_mm, corner)) };
+}
+
+/** A triangle keeps its corners. */
+export const removedCorner = (pillar: Pillar, corner: number): Pillar =>
+  isShaped(pillar) || pillar.outline_mm.length <= 3
+    ? pillar
+    : { ...pillar, outline_mm: pillar.outline_mm.toSpliced(corner, 1) };
+
+export function middleOfSide(outline: readonly Place[], corner: number): Place {
+  const [a, b] = [outline[corner] ?? [0, 0], outline[(corner + 1) % outline.length] ?? [0, 0]];
+  return [rounded(0.5 * (a[0] + b[0])), rounded(0.5 * (a[1] + b[1]))];
+}
+
 export const changePillar = (scene: Scene, index: number, change: (pillar: Pillar) => Pillar): Scene => ({
   ...scene,
   pillars: replaced(scene.pillars, index, change),

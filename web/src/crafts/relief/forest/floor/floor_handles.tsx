@@ -22,7 +22,7 @@ import { colourOf, isChosen, modelName, placeWords, shapeName } from '../views';
 /** What is said of how they are moved. */
 export const helpId = 'forest-plan-help';
 
-interface Shared {
+export interface Shared {
   readonly session: ForestSession;
   readonly scene: Scene;
   /** Millimetres a pixel. */
@@ -31,7 +31,7 @@ interface Shared {
   readonly onHold: (hold: boolean) => void;
 }
 
-interface HandleProps extends Shared {
+export interface HandleProps extends Shared {
   readonly what: Chosen;
   readonly name: string;
   readonly label: string;
@@ -53,7 +53,7 @@ const steps: Readonly<Record<string, Place>> = {
 };
 
 /** Dragging, or holding a key, is one step to undo. */
-function Handle(props: HandleProps) {
+export function Handle(props: HandleProps) {
   const { session, what, place, onMove } = props;
   const grip = useRef<Place | null>(null);
   const choose = () => (session.chosen.value = what);

@@ -3,11 +3,13 @@
 import { useEffect, useRef, useState } from 'preact/hooks';
 import type { Frame } from './floor_frame';
 import { frameOf, markOf } from './floor_frame';
+import { PillarCorners } from './floor_corners';
 import { EyeHandle, helpId, LookHandle, PillarHandle } from './floor_handles';
 import type { ForestSession } from '../forest_session';
 import type { Plan } from '../plan';
 import type { Place, Scene, Viewpoint } from '../scene';
-import { colourOf, planReach } from '../views';
+import { isShaped } from '../scene';
+import { colourOf, isChosen, planReach } from '../views';
 
 export interface FloorPlanProps {
   readonly session: ForestSession;
@@ -78,6 +80,11 @@ export function FloorPlan({ session, scene }: FloorPlanProps) {
           <PillarHandle key={p} {...handles} pillar={pillar} index={p} />
         ))}
         {planned ? <Surfaces plan={planned.plan} mm={mm} /> : null}
+        {scene.pillars.map((pillar, p) =>
+          isChosen(session.chosen.value, 'pillar', p) && !isShaped(pillar) ? (
+            <PillarCorners key={p} {...handles} pillar={pillar} index={p} />
+          ) : null,
+        )}
         {scene.viewpoints.map((viewpoint, v) => (
           <LookHandle key={v} {...handles} viewpoint={viewpoint} index={v} />
         ))}

@@ -10,6 +10,7 @@ import {
   changePillar,
   isShaped,
   movedPillar,
+  outlinedPillar,
   placeOf,
   removePillar,
   shapedPillar,
@@ -58,19 +59,28 @@ export function PillarFields({ session, pillar, index, count }: PillarFieldsProp
         <select
           id={id}
           class="select"
-          value={isShaped(pillar) ? pillar.shape : ''}
-          onChange={({ currentTarget: { value } }) => {
-            if (value) set((one) => shapedPillar(one, value as Shape), `Change the shape of ${name}`);
-          }}
+          value={isShaped(pillar) ? pillar.shape : 'outline'}
+          onChange={({ currentTarget: { value } }) =>
+            set(
+              (one) => (value === 'outline' ? outlinedPillar(one) : shapedPillar(one, value as Shape)),
+              `Change the shape of ${name}`,
+            )
+          }
         >
-          {isShaped(pillar) ? null : <option value="">{outlineName}</option>}
           {shapes.map((shape) => (
             <option key={shape} value={shape}>
               {shapeNames[shape]}
             </option>
           ))}
+          <option value="outline">{outlineName}</option>
         </select>
       </div>
+      {isShaped(pillar) ? null : (
+        <p class="hint">
+          Drag the corners in the plan, or move them with the arrow keys. A press on the middle of a side adds
+          one, Delete takes one away.
+        </p>
+      )}
       <div class="scene-numbers">
         <NumberField
           label="Pillar x"

@@ -135,27 +135,27 @@ describe('viewpoints', () => {
 
 it('a scene is the same after it was written and read', () => {
   expect(readScene(sceneBytes(scene))).toEqual(scene);
+});
 
-  it('turns a shape into an outline of its own, whose corners are changed', () => {
-    const own = outlinedPillar(square);
-    expect(cornersOf(own)).toHaveLength(4);
-    for (const [x, y] of cornersOf(own)) expect(Math.hypot(x - 10, y + 40)).toBeCloseTo(6 * Math.SQRT2, 1);
-    // Counter-clockwise, as the core reads outlines.
-    const area = cornersOf(own).reduce((sum, [x, y], k, all) => {
-      const [a, b] = all[(k + 1) % all.length] ?? [0, 0];
-      return sum + (x * b - a * y) / 2;
-    }, 0);
-    expect(area).toBeCloseTo(144, 0);
-    expect(cornersOf(outlinedPillar({ ...square, shape: 'hexagon' }))).toHaveLength(6);
-    expect(outlinedPillar(outlined)).toBe(outlined);
+it('turns a shape into an outline of its own, whose corners are changed', () => {
+  const own = outlinedPillar(square);
+  expect(cornersOf(own)).toHaveLength(4);
+  for (const [x, y] of cornersOf(own)) expect(Math.hypot(x - 10, y + 40)).toBeCloseTo(6 * Math.SQRT2, 1);
+  // Counter-clockwise, as the core reads outlines.
+  const area = cornersOf(own).reduce((sum, [x, y], k, all) => {
+    const [a, b] = all[(k + 1) % all.length] ?? [0, 0];
+    return sum + (x * b - a * y) / 2;
+  }, 0);
+  expect(area).toBeCloseTo(144, 0);
+  expect(cornersOf(outlinedPillar({ ...square, shape: 'hexagon' }))).toHaveLength(6);
+  expect(outlinedPillar(outlined)).toBe(outlined);
 
-    expect(cornersOf(movedCorner(own, 2, [1.26, 3]))[2]).toEqual([1.3, 3]);
-    const more = addedCorner(own, 3);
-    expect(cornersOf(more)).toHaveLength(5);
-    const [a, , , d, between] = cornersOf(more);
-    expect(between?.[0]).toBeCloseTo(((a?.[0] ?? 0) + (d?.[0] ?? 0)) / 2, 1);
-    const triangle = removedCorner(own, 0);
-    expect(cornersOf(triangle)).toHaveLength(3);
-    expect(removedCorner(triangle, 0)).toBe(triangle);
-  });
+  expect(cornersOf(movedCorner(own, 2, [1.26, 3]))[2]).toEqual([1.3, 3]);
+  const more = addedCorner(own, 3);
+  expect(cornersOf(more)).toHaveLength(5);
+  const [a, , , d, between] = cornersOf(more);
+  expect(between?.[0]).toBeCloseTo(((a?.[0] ?? 0) + (d?.[0] ?? 0)) / 2, 1);
+  const triangle = removedCorner(own, 0);
+  expect(cornersOf(triangle)).toHaveLength(3);
+  expect(removedCorner(triangle, 0)).toBe(triangle);
 });

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <span>
 
+#include "base/sha256.h"
 #include "geometry/mesh/adjacency.h"
 #include "geometry/queries/ray_caster.h"
 #include "relief/appearance_energy.h"
@@ -35,7 +37,7 @@ BoundedQpConstraints constraints_of(const ViewFrame& frame, const DepthBounds& b
   c.gauge = Eigen::VectorXd::Constant(n, 1.0 / static_cast<double>(n));
   for (int i = 0; i < n; ++i) {
     if (!bounds.bounded[static_cast<std::size_t>(i)]) continue;
-    c.lower[i] = frame.u_for_depth(i, bounds.nearest[i]);
+    c.lower[i] = frame.u_for_depth(i, bounds.nearest_allowed(i));
     c.upper[i] = frame.u_for_depth(i, bounds.farthest[i]);
     c.lower_slope[i] = 1 + frame.kappa * c.lower[i];
     c.upper_slope[i] = 1 + frame.kappa * c.upper[i];
@@ -121,12 +123,12 @@ bool can_hold(const InequalityRow& row, const DepthBounds& bounds, const Bounded
   return !(best < row.bound);
 }
 
-/// w_i of eq. (3.13).
-Eigen::VectorXd vertex_weights(const Visibility& visibility, double hidden_weight) {
+/// w_i of eq. (3.13). `painted`: n factors, or none.
+Eigen::VectorXd vertex_weights(const Visibility& visibility, double hidden_weight, const Eigen::VectorXd& painted) {
   Eigen::VectorXd weights(static_cast<Eigen::Index>(visibility.vertex.size()));
   for (Eigen::Index i = 0; i < weights.size(); ++i)
     weights[i] = visibility.vertex[static_cast<std::size_t>(i)] ? 1.0 : hidden_weight;
-  return weights;
+  return painted.size() > 0 ? weights.cwiseProduct(painted) : weights;
 }
 
 double order_violation(const std::vector<InequalityRow>& rows, const Eigen::VectorXd& u) {
@@ -153,7 +155,7 @@ Eigen::VectorXd ray_lengths(const ViewFrame& frame, const Eigen::VectorXd& u) {
 
 ReliefSolver::~ReliefSolver() = default;
 
-std::string ReliefSolver::key(const ReliefOptions& options) {
+std::string ReliefSolver::key(const ReliefOptions& options, const Eigen::VectorXd& painted_weight) {
   // The viewing distance counts in units of the width; everything else here is free of the size.
   Json key = {write_parameters(options).at("projection"), options.direction, options.up, options.hidden_weight,
               options.depth_order};
@@ -161,10 +163,15 @@ std::string ReliefSolver::key(const ReliefOptions& options) {
     if (options.distance_mm) key.push_back(*options.distance_mm / options.width_mm);
     else key.push_back(Json{options.field_of_view_deg});
   }
+  if (painted_weight.size() > 0)
+    key.push_back(
+        sha256_hex(std::as_bytes(std::span(painted_weight.data(), static_cast<std::size_t>(painted_weight.size())))));
   return key.dump();
 }
 
-ReliefSolver::ReliefSolver(const TriangleMesh& mesh, const ReliefOptions& options, Context& context) : F_(mesh.F) {
+ReliefSolver::ReliefSolver(const TriangleMesh& mesh, const ReliefOptions& options, Context& context,
+                           Eigen::VectorXd painted_weight)
+    : F_(mesh.F), painted_weight_(std::move(painted_weight)) {
   if (mesh.vertex_count() > max_vertices) {
     throw Error(ErrorCode::invalid_input, "mesh",
                 "The model has " + std::to_string(mesh.vertex_count()) +
@@ -183,7 +190,8 @@ ReliefSolver::ReliefSolver(const TriangleMesh& mesh, const ReliefOptions& option
     throw Error(ErrorCode::invalid_input, "direction",
                 "Nothing of the model is visible from this viewpoint: choose another looking direction.");
   context.progress(0.25, "Measuring the surface");
-  energy_ = std::make_unique<AppearanceEnergy>(frame_, F_, vertex_weights(visibility_, options.hidden_weight));
+  energy_ = std::make_unique<AppearanceEnergy>(frame_, F_,
+                                               vertex_weights(visibility_, options.hidden_weight, painted_weight_));
   SparseMatrix Q = energy_->lower_hessian(context);
   // The mean curvature scale of the mesh sits in Q; a unit diagonal keeps every tolerance below free of it.
   Q *= 1 / Q.diagonal().mean();
@@ -209,9 +217,11 @@ BoundedQpSolution ReliefSolver::solve_on_base(BoundedQpConstraints& constraints,
 int ReliefSolver::balance(const ReliefOptions& options, const DepthBounds& bounds,
                           const BoundedQpConstraints& constraints, bool flat, Eigen::VectorXd& u, Context& context) {
   if (!balanced_) {
-    const AppearanceEnergy energy(frame_, F_,
-                                  vertex_weights(visibility_, std::min(balanced_hidden_weight, options.hidden_weight)));
-    balanced_ = std::make_unique<BalancedSolver>(frame_, F_, visibility_, energy.lower_hessian(context), context);
+    const AppearanceEnergy energy(
+        frame_, F_,
+        vertex_weights(visibility_, std::min(balanced_hidden_weight, options.hidden_weight), painted_weight_));
+    balanced_ = std::make_unique<BalancedSolver>(frame_, F_, visibility_, energy.lower_hessian(context), context,
+                                                 painted_weight_);
   }
   const BalancedResult balanced = balanced_relief(
       *balanced_,
@@ -222,9 +232,10 @@ int ReliefSolver::balance(const ReliefOptions& options, const DepthBounds& bound
   return balanced.steps;
 }
 
-Relief ReliefSolver::solve(const ReliefOptions& options, const BaseSurface& base, Context& context) {
-  const DepthBounds bounds = depth_bounds(frame_, visibility_, base, options, context);
-  if (bounds.groups == 1) return solve_within(options, bounds, nullptr, base.is_flat(), context);
+Relief ReliefSolver::solve(const ReliefOptions& options, const BaseSurface& base, Context& context,
+                           const Painting& painting) {
+  const DepthBounds bounds = depth_bounds(frame_, visibility_, base, options, context, painting);
+  if (bounds.groups == 1) return solve_within(options, bounds, nullptr, base.is_flat() && !bounds.painted(), context);
   const BandBorders borders(frame_, *base.bands(), bounds);
   return solve_within(options, bounds, &borders, false, context);
 }
@@ -285,8 +296,9 @@ Relief ReliefSolver::solve_within(const ReliefOptions& options, const DepthBound
   relief.seen = in_steps ? frame_.moved(looked_at) : relief.moved;
   relief.normal_error = normal_error(frame_, F_, visibility_, relief.seen);
   if (in_steps) relief.pieces = cut_into_bands(frame_, F_, relief.qp.u, m, bounds, *borders, context);
+  const bool own_bounds = in_steps || bounds.painted();
   const Eigen::VectorXd linear = linear_compression(
-      frame_, in_steps ? depth_bounds(frame_, visibility_, BaseSurface(), options, context) : bounds);
+      frame_, own_bounds ? depth_bounds(frame_, visibility_, BaseSurface(), options, context) : bounds);
   relief.energy_linear = (*energy_)(linear);
   relief.seen_linear = frame_.moved(linear);
   relief.normal_error_linear = normal_error(frame_, F_, visibility_, relief.seen_linear);
@@ -306,6 +318,10 @@ Relief ReliefSolver::solve_within(const ReliefOptions& options, const DepthBound
                   relief.lambda_mm[i] - relief.lambda_max_mm[i]});
   }
   relief.vertices_beyond_base = bounds.missed;
+  if (bounds.painted()) {
+    relief.above_mm = size * (in_steps ? relief.pieces.above : bounds.above_of);
+    relief.below_mm = size * (in_steps ? relief.pieces.below : bounds.below_of);
+  }
   relief.order_rows = static_cast<int>(constraints.rows.size());
   if (!lent) relief.order_rows_left_out = static_cast<int>(order_rows_.size() - constraints.rows.size());
   relief.order_violation_max_mm = size * order_violation(constraints.rows, relief.u);

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "base/parallel.h"
+#include "relief/painting/painted_bounds.h"
 
 namespace formwright {
 namespace {
@@ -27,7 +28,7 @@ void refuse_misses(const DepthBounds& bounds, int asked, const ReliefOptions& op
 }  // namespace
 
 DepthBounds depth_bounds(const ViewFrame& frame, const Visibility& visibility, const BaseSurface& base,
-                         const ReliefOptions& options, Context& context) {
+                         const ReliefOptions& options, Context& context, const Painting& painting) {
   const auto n = static_cast<std::size_t>(frame.P.rows());
   const double thickness = options.thickness_mm / options.width_mm, carve = options.carve_depth_mm / options.width_mm;
   DepthBounds bounds;
@@ -35,6 +36,7 @@ DepthBounds depth_bounds(const ViewFrame& frame, const Visibility& visibility, c
   bounds.farthest = Eigen::VectorXd::Constant(frame.P.rows(), carve);
   bounds.bounded.assign(n, 1);
   if (options.bounded_vertices == BoundedVertices::visible) bounds.bounded = visibility.vertex;
+  if (painting.bounds_depth()) set_painted_room(painting, options, bounds);
   bounds.group.assign(n, 0);
   bounds.above = thickness;
   bounds.below = carve;
@@ -46,15 +48,17 @@ DepthBounds depth_bounds(const ViewFrame& frame, const Visibility& visibility, c
       context.check_cancelled();
       for (std::size_t i = begin; i < end; ++i) {
         const auto vertex = static_cast<Eigen::Index>(i);
-        const auto nearest = base.depth_on_ray(frame, vertex, -thickness),
-                   farthest = base.depth_on_ray(frame, vertex, carve);
+        const double above = bounds.above_of.size() > 0 ? bounds.above_of[vertex] : thickness,
+                     below = bounds.above_of.size() > 0 ? bounds.below_of[vertex] : carve;
+        const auto nearest = base.depth_on_ray(frame, vertex, -above),
+                   farthest = base.depth_on_ray(frame, vertex, below);
         if (bands != nullptr) bounds.group[i] = bands->of_ray(frame, frame.P.row(vertex).transpose());
         if (nearest && farthest) {
           bounds.nearest[vertex] = *nearest;
           bounds.farthest[vertex] = std::max(*nearest, *farthest);
         } else if (bounds.bounded[i]) {
           bounds.bounded[i] = 0;
-          ++missed;
+          if (painting.region_of(vertex) != PaintedRegion::free) ++missed;
         }
       }
     });
@@ -66,6 +70,7 @@ DepthBounds depth_bounds(const ViewFrame& frame, const Visibility& visibility, c
     throw Error(
         ErrorCode::invalid_input, base.is_flat() ? "thickness_mm" : "base",
         "The relief would extend more than half-way to the viewpoint: choose a smaller thickness or a larger viewing distance.");
+  if (bounds.above_of.size() > 0) open_free_regions(frame, painting, bounds);
   return bounds;
 }
 

@@ -3,15 +3,23 @@
 import type { JobInput, JsonObject } from '../../jobs/contract';
 import type { Companion, CraftDocument, CraftResult, Subject } from '../../shared/session/craft_document';
 import { CraftCommands, emptyCraft, sameRequest } from '../../shared/session/craft_document';
+import type { Painting } from './paint/painting';
 
 export interface ReliefDocument extends CraftDocument {
   /** The file of the surface that the relief is worked into; null for a built-in shape. */
   readonly base: Companion | null;
   /** What differs from the defaults of the light that it is shown in. */
   readonly light: JsonObject;
+  /** What was painted last, and on which model. */
+  readonly painting: Painting | null;
 }
 
-export const relief = new CraftCommands<ReliefDocument>('relief', { ...emptyCraft, base: null, light: {} });
+export const relief = new CraftCommands<ReliefDocument>('relief', {
+  ...emptyCraft,
+  base: null,
+  light: {},
+  painting: null,
+});
 
 /** The operation's input for it. */
 export const baseInputs = ({ base }: ReliefDocument): Readonly<Record<string, JobInput>> =>

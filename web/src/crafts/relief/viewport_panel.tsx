@@ -11,6 +11,8 @@ import { narrow } from '../../shared/panels/narrow';
 import { figure } from '../../shared/session/report';
 import { originalData, scaled } from '../../shared/panels/shaded_mesh';
 import { ForestButton } from './forest/forest_button';
+import { brushPointer, keepPainted } from './paint/paint_scene';
+import { PaintTool } from './paint/paint_tool';
 import { brightnessMapping } from './light/light_values';
 import { errorMapping, errorOf, litData, plateOf, reliefData, viewpointOf } from './meshes';
 import type { ReliefSession } from './relief_session';
@@ -58,10 +60,11 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
   /** The view says itself why it cannot draw; what belongs to a picture goes away. */
   const drawing = useSignal(true);
   const isNarrow = useSignal(narrow());
+  const made = useSignal<Viewport | null>(null);
 
   useEffect(() => {
     if (container.current === null) return undefined;
-    const viewport = new Viewport(container.current, {
+    const viewport: Viewport = new Viewport(container.current, {
       mode: drawnMode(mode.value),
       light: light.value,
       freeRectangle: freeRectangle(null),
@@ -71,6 +74,7 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
         if (followCamera.value && !at) session.setViewpoint(camera, 'viewpoint');
       },
       onStatus: ({ state }) => (drawing.value = state === 'ready'),
+      onPointer: brushPointer(session, (x, y) => viewport.pick(x, y)),
     });
     const lightBall = new LightBall(light.value, (chosen) => {
       light.value = chosen;
@@ -83,11 +87,13 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
     const stop = [
       effect(() => followOnly(session)),
       effect(() => {
-        session.light.open.value = mode.value === 'light';
+        const painting = session.paint.open.value;
+        session.light.open.value = mode.value === 'light' && !painting;
         viewport.setColourMapping(mode.value === 'light' ? brightnessMapping : errorMapping);
-        viewport.setMode(drawnMode(mode.value));
+        viewport.setMode(painting ? 'original' : drawnMode(mode.value));
       }),
       keepDrawn(viewport, session, (thickness) => inset.update(thickness)),
+      keepPainted(viewport, session),
       effect(() =>
         viewport.setResting(session.previews.running.value || session.activity.value.kind !== 'idle'),
       ),
@@ -99,8 +105,10 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
     resize.observe(container.current);
     if (foot.current) resize.observe(foot.current);
     onViewport(viewport);
+    made.value = viewport;
     return () => {
-      session.light.open.value = false;
+      made.value = null;
+      session.light.open.value = session.paint.open.value = false;
       onViewport(null);
       resize.disconnect();
       for (const end of stop) end();
@@ -120,7 +128,9 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
   return (
     <div class="viewport-panel">
       <div ref={container} class="viewport" />
-      {session.model.original.value && drawing.value ? (
+      {session.paint.open.value && drawing.value ? (
+        <PaintTool session={session} viewport={made.value} />
+      ) : session.model.original.value && drawing.value ? (
         <div class="float top-left relief-views">
           <Segmented
             floating
@@ -133,7 +143,7 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
         </div>
       ) : null}
       <div ref={foot} class="float bottom-left foot">
-        {mode.value === 'error' && shown ? (
+        {mode.value === 'error' && shown && !session.paint.open.value ? (
           <Legend
             mapping={errorMapping}
             values={errorOf(shown.mesh)}
@@ -188,7 +198,7 @@ function keepDrawn(
       drawnOriginal = drawnRelief = drawnModel = null;
       return;
     }
-    const fits = session.fits.value;
+    const fits = session.showsModel.value;
     const scale = session.drawnScale.value;
     if (drawnOriginal?.from !== original.from) viewport.setOriginal(originalData(original.mesh, scale));
     else if (drawnOriginal.scale !== scale) viewport.rescaleOriginal(scaled(original.mesh.positions, scale));

@@ -19,6 +19,8 @@ namespace formwright {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
+// Of the slab: an order row between surfaces that are held where they touch is decided by round-off.
+constexpr double painted_row_room = 1e-6;
 constexpr double balanced_hidden_weight = 0.01;  // at most: hidden parts only have to give way
 // About 3.9 kB a vertex: 6 GB natively, and what fits into the 4 GB that WASM can have.
 constexpr int max_vertices = sizeof(void*) > 4 ? 1'500'000 : 600'000;
@@ -111,8 +113,8 @@ Eigen::VectorXd settled(const ViewFrame& frame, const BoundedQpConstraints& c, c
 
 /// Whether a depth-order row can hold within the bounds. Over a triangle the base may bend by more than the relief is
 /// thick: a row that is interpolated there may contradict the bounds, which count more. On steps the rows within one
-/// step stay: their bounds are one slab.
-bool can_hold(const InequalityRow& row, const DepthBounds& bounds, const BoundedQpConstraints& c) {
+/// step stay: their bounds are one slab. `room`, in units of u: what a row needs to have to spare.
+bool can_hold(const InequalityRow& row, const DepthBounds& bounds, const BoundedQpConstraints& c, double room) {
   double best = 0;
   for (std::size_t k = 0; k < row.index.size(); ++k) {
     const int i = row.index[k];
@@ -120,7 +122,14 @@ bool can_hold(const InequalityRow& row, const DepthBounds& bounds, const Bounded
     if (bounds.group[at] != bounds.group[static_cast<std::size_t>(row.index.front())]) return false;
     best += row.coefficient[k] * (row.coefficient[k] > 0 ? c.upper[i] : c.lower[i]);
   }
-  return !(best < row.bound);
+  return !(best < row.bound + room);
+}
+
+/// Whether a row has a vertex that is painted with limits closer than the usual ones.
+bool is_pressed(const InequalityRow& row, const DepthBounds& bounds) {
+  return bounds.painted() && std::ranges::any_of(row.index, [&](int i) {
+           return bounds.above_of[i] < bounds.above || bounds.below_of[i] < bounds.below;
+         });
 }
 
 /// w_i of eq. (3.13). `painted`: n factors, or none.
@@ -202,16 +211,27 @@ ReliefSolver::ReliefSolver(const TriangleMesh& mesh, const ReliefOptions& option
   seconds_factorise_ = watch.seconds();
 }
 
-/// Rows that contradict the bounds only together are left out as a whole, where the base is not flat.
-BoundedQpSolution ReliefSolver::solve_on_base(BoundedQpConstraints& constraints, const BoundedQpOptions& options,
-                                              bool flat, Context& context) {
-  try {
-    return qp_.solve(constraints, options, context);
-  } catch (const Error& error) {
-    if (flat || constraints.rows.empty() || error.code() != ErrorCode::could_not_solve) throw;
+/// Rows that contradict the bounds only together are left out where the base is not flat or limits are painted: first
+/// those of painted places, then all.
+BoundedQpSolution ReliefSolver::solve_on_base(BoundedQpConstraints& constraints, const DepthBounds& bounds,
+                                              const BoundedQpOptions& options, bool flat, Context& context) {
+  if (bounds.painted() && constraints.lower == constraints.upper) {
+    // Every vertex is held where it is painted.
+    constraints.rows.clear();
+    BoundedQpSolution held;
+    held.u = constraints.lower;
+    held.m = Eigen::VectorXd::Zero(constraints.group_count);
+    return held;
   }
-  constraints.rows.clear();
-  return qp_.solve(constraints, options, context);
+  for (;;) {
+    try {
+      return qp_.solve(constraints, options, context);
+    } catch (const Error& error) {
+      if (flat || constraints.rows.empty() || error.code() != ErrorCode::could_not_solve) throw;
+    }
+    if (std::erase_if(constraints.rows, [&](const InequalityRow& row) { return is_pressed(row, bounds); }) == 0)
+      constraints.rows.clear();
+  }
 }
 
 int ReliefSolver::balance(const ReliefOptions& options, const DepthBounds& bounds,
@@ -248,6 +268,7 @@ Relief ReliefSolver::solve(const ReliefOptions& options, const DepthBounds& boun
 Relief ReliefSolver::solve_within(const ReliefOptions& options, const DepthBounds& bounds, const GroupBorders* borders,
                                   bool flat, Context& context) {
   BoundedQpConstraints constraints = constraints_of(frame_, bounds);
+  const double slab = (options.thickness_mm + options.carve_depth_mm) / options.width_mm;
   if (options.appearance == Appearance::balanced && borders != nullptr)
     throw Error(
         ErrorCode::invalid_input, "appearance",
@@ -266,8 +287,9 @@ Relief ReliefSolver::solve_within(const ReliefOptions& options, const DepthBound
     }
   } rows(order_rows_, constraints.rows, lent);
   if (!lent)
-    std::ranges::copy_if(order_rows_, std::back_inserter(constraints.rows),
-                         [&](const InequalityRow& row) { return can_hold(row, bounds, constraints); });
+    std::ranges::copy_if(order_rows_, std::back_inserter(constraints.rows), [&](const InequalityRow& row) {
+      return can_hold(row, bounds, constraints, bounds.painted() ? painted_row_room * slab : 0);
+    });
 
   Relief relief;
   set_start(frame_, bounds, constraints);
@@ -275,11 +297,11 @@ Relief ReliefSolver::solve_within(const ReliefOptions& options, const DepthBound
   constraints.start_satisfies_rows = lent;
   BoundedQpOptions qp_options;
   qp_options.method = options.method;
-  qp_options.violation_tolerance = 1e-9 * (options.thickness_mm + options.carve_depth_mm) / options.width_mm;
+  qp_options.violation_tolerance = 1e-9 * slab;
   {
     const auto span =
         context.span(0, options.appearance == Appearance::detail ? 0.9 : 0.4, "Fitting into the thickness");
-    relief.qp = solve_on_base(constraints, qp_options, lent, context);
+    relief.qp = solve_on_base(constraints, bounds, qp_options, lent, context);
   }
   const Eigen::VectorXd m = scales(constraints, relief.qp);
   relief.u = settled(frame_, constraints, relief.qp.u, m);

@@ -73,8 +73,8 @@ class ReliefSolver {
  private:
   Relief solve_within(const ReliefOptions& options, const DepthBounds& bounds, const GroupBorders* borders, bool flat,
                       Context& context);
-  BoundedQpSolution solve_on_base(BoundedQpConstraints& constraints, const BoundedQpOptions& options, bool flat,
-                                  Context& context);
+  BoundedQpSolution solve_on_base(BoundedQpConstraints& constraints, const DepthBounds& bounds,
+                                  const BoundedQpOptions& options, bool flat, Context& context);
   /// Moves `u` from the optimum of eq. (3.13) to the balanced relief; the number of steps.
   int balance(const ReliefOptions& options, const DepthBounds& bounds, const BoundedQpConstraints& constraints,
               bool flat, Eigen::VectorXd& u, Context& context);

@@ -73,7 +73,8 @@ Model ball(int rows = 16) {
     }
   }
   model.mesh.V.resize(static_cast<Eigen::Index>(points.size()), 3);
-  for (std::size_t i = 0; i < points.size(); ++i) model.mesh.V.row(static_cast<Eigen::Index>(i)) = points[i].transpose();
+  for (std::size_t i = 0; i < points.size(); ++i)
+    model.mesh.V.row(static_cast<Eigen::Index>(i)) = points[i].transpose();
   model.mesh.F.resize(static_cast<Eigen::Index>(faces.size()), 3);
   for (std::size_t i = 0; i < faces.size(); ++i) model.mesh.F.row(static_cast<Eigen::Index>(i)) = faces[i].transpose();
   return model;
@@ -82,7 +83,10 @@ Model ball(int rows = 16) {
 std::vector<VertexColumn> columns_of(const Model& model) {
   const Eigen::VectorXd x = model.mesh.V.col(0);
   return {{"weight", x.unaryExpr([](double v) { return v > 0.2 ? 3.0 : 1.0; })},
-          {"region", x.unaryExpr([](double v) { return v < -0.7 ? 2.0 : v < -0.3 ? 3.0 : v > 0.7 ? 1.0 : 0.0; }),
+          {"region", x.unaryExpr([](double v) { return v < -0.7   ? 2.0
+                                                       : v < -0.3 ? 3.0
+                                                       : v > 0.7  ? 1.0
+                                                                  : 0.0; }),
            ColumnKind::uint8},
           {"thickness_mm", x.unaryExpr([](double v) { return v < -0.3 && v >= -0.7 ? 2.0 : 0.0; })}};
 }
@@ -242,9 +246,10 @@ TEST_CASE("ReliefPainting.WrongValuesAreRefusedInOneSentence") {
   CHECK_THAT(refusal(with_column("region", 9), "mesh"), ContainsSubstring("vertex 7 has region 9, which is not known"));
   CHECK_THAT(refusal(with_column("thickness_mm", -2), "mesh"), ContainsSubstring("thickness_mm -2"));
   // ASCII can say that a value is not a number.
-  std::string text = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
-                     "property float weight\nelement face 4\nproperty list uchar int vertex_indices\nend_header\n"
-                     "0 0 0 1\n1 0 0 nan\n0 1 0 1\n0 0 1 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
+  std::string text =
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+      "property float weight\nelement face 4\nproperty list uchar int vertex_indices\nend_header\n"
+      "0 0 0 1\n1 0 0 nan\n0 1 0 1\n0 0 1 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
   CHECK_THAT(refusal({{"mesh", {"a.ply", to_bytes(text)}}}, "mesh"),
              ContainsSubstring("a.ply: the vertices' weight holds values that are not numbers"));
 
@@ -257,16 +262,19 @@ TEST_CASE("ReliefPainting.WrongValuesAreRefusedInOneSentence") {
       {"a run of weight is not of the form", {{"vertices", n}, {"weight", {{3, 2}}}}},
       {"there is no region called", {{"vertices", n}, {"region", {{3, 2, "loose"}}}}},
       {"a value of weight is not a number", {{"vertices", n}, {"weight", {{3, 2, nullptr}}}}},
+      {"the runs of weight overlap", {{"vertices", n}, {"weight", {{0, n, 2}, {3, 1, 2}}}}},
       {"weight must be a list", {{"vertices", n}, {"weight", 3}}},
       {"it has \"colour\", which is not known", {{"vertices", n}, {"colour", 3}}},
       {"which must be from 0.01 to 100", {{"vertices", n}, {"weight", {{3, 2, 1e9}}}}}};
-  for (const auto& [sentence, json] : wrong) CHECK_THAT(refusal(painted(json), "painting"), ContainsSubstring(sentence));
+  for (const auto& [sentence, json] : wrong)
+    CHECK_THAT(refusal(painted(json), "painting"), ContainsSubstring(sentence));
   CHECK_THAT(refusal({{"mesh", plain}, {"painting", {"p.json", to_bytes("{\"vertices\": ")}}}, "painting"),
              ContainsSubstring("it is not a painting"));
   CHECK_THAT(refusal({{"mesh", plain}, {"painting", plain}}, "painting"),
              ContainsSubstring("its vertices have no weight, region"));
-  CHECK_THAT(refusal({{"mesh", plain}, {"painting", file_of(ball(8), MeshFormat::ply, columns_of(ball(8)))}}, "painting"),
-             ContainsSubstring("it is painted for"));
+  CHECK_THAT(
+      refusal({{"mesh", plain}, {"painting", file_of(ball(8), MeshFormat::ply, columns_of(ball(8)))}}, "painting"),
+      ContainsSubstring("it is painted for"));
 }
 
 TEST_CASE("ReliefPainting.TheSolidStandsOutWhereItIsFree") {

@@ -211,6 +211,7 @@ TEST_CASE("Painting.EveryVertexKeepsItsOwnLimitsOnEveryBase") {
         CHECK(s.relief.moved.allFinite());
         CHECK(s.relief.bound_violation_max_mm <= 0);
         CHECK(s.relief.order_violation_max_mm <= 1e-5);
+        CHECK(s.relief.qp.kkt_residual <= 1e-6);
         double beyond = 0;
         int own = 0;
         for (Eigen::Index i = 0; i < mesh.V.rows(); ++i) {
@@ -221,7 +222,8 @@ TEST_CASE("Painting.EveryVertexKeepsItsOwnLimitsOnEveryBase") {
           const double base_depth =
               shape == BaseShape::stairs
                   ? s.base.bands()->depth(s.base.bands()->of_ray(s.frame, s.frame.P.row(i).transpose()))
-                  : s.base.is_flat() ? 0 : s.base.depth_at(s.relief.moved(i, 0), s.relief.moved(i, 1)).value_or(NAN);
+              : s.base.is_flat() ? 0
+                                 : s.base.depth_at(s.relief.moved(i, 0), s.relief.moved(i, 1)).value_or(NAN);
           const double height = 100 * (base_depth - s.relief.moved(i, 2));
           if (std::isnan(height)) continue;  // beyond the edge of the base
           beyond = std::max({beyond, height - above, -height - below});
@@ -238,8 +240,10 @@ TEST_CASE("Painting.TheOrderOfVerticesDoesNotMatter") {
   std::vector<int> order(static_cast<std::size_t>(mesh.V.rows()));
   std::iota(order.begin(), order.end(), 0);
   test::Random random(5);
-  for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[static_cast<std::size_t>(random.below(static_cast<int>(i)))]);
-  TriangleMesh permuted{mesh.V(order, Eigen::placeholders::all), mesh.F};
+  for (std::size_t i = order.size(); i > 1; --i)
+    std::swap(order[i - 1], order[static_cast<std::size_t>(random.below(static_cast<int>(i)))]);
+  TriangleMesh permuted = mesh;
+  for (std::size_t i = 0; i < order.size(); ++i) permuted.V.row(static_cast<Eigen::Index>(i)) = mesh.V.row(order[i]);
   std::vector<int> place(order.size());
   for (std::size_t i = 0; i < order.size(); ++i) place[static_cast<std::size_t>(order[i])] = static_cast<int>(i);
   for (int& v : permuted.F.reshaped()) v = place[static_cast<std::size_t>(v)];
@@ -281,10 +285,12 @@ TEST_CASE("Painting.ASmoothWeightConverges") {
     painting.weight = (1.5 * mesh.V.col(0).array()).exp();
     const Solved s = solved(mesh, options_of(5, Projection::orthographic), painting);
     const Eigen::VectorXd depth = s.relief.moved.col(2);
-    if (before) change.push_back(std::sqrt((depth.head(before->size()) - *before).squaredNorm() / static_cast<double>(before->size())));
+    if (before)
+      change.push_back(
+          std::sqrt((depth.head(before->size()) - *before).squaredNorm() / static_cast<double>(before->size())));
     before = depth;
   }
-  UNSCOPED_INFO("order " << std::log2(change[0] / change[1]));
+  INFO("changes " << change[0] << " " << change[1]);
   CHECK(std::log2(change[0] / change[1]) >= 1.0);
 }
 
@@ -338,7 +344,7 @@ TEST_CASE("Painting.TheSolidHasRoomForWhatIsFree") {
   ReliefOptions options = options_of(3, Projection::orthographic);
   const Solved s = solved(mesh, options, painting);
   const double top_mm = -100 * s.relief.moved.col(2).minCoeff();
-  CHECK(top_mm > 6);
+  CHECK(top_mm > 5);
   Context context;
   const AllowedSpace space{s.base, top_mm, 1};
   CoveringMesh front{s.relief.moved, s.F};

@@ -5,8 +5,8 @@
 
 namespace formwright {
 
-/// Before the base is looked for: fills `above_of` and `below_of`, gives painted vertices the limits of a flat base, and
-/// bounds those that are painted with limits, hidden ones too. A vertex painted free has the room of the rest.
+/// Before the base is looked for: fills `above_of` and `below_of`, gives painted vertices the limits of a flat base,
+/// and bounds those that are painted with limits, hidden ones too. A vertex painted free has the room of the rest.
 void set_painted_room(const Painting& painting, const ReliefOptions& options, DepthBounds& bounds);
 
 /// After the base is found: fills `reach`. Vertices painted free may come towards the viewer until half-way to the

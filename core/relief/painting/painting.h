@@ -9,9 +9,9 @@
 namespace formwright {
 
 enum class PaintedRegion : unsigned char {
-  usual,        // the limits of depth that the rest has
-  free,         // no limit towards the viewer
-  on_base,      // on the surface of the base
+  usual,         // the limits of depth that the rest has
+  free,          // no limit towards the viewer
+  on_base,       // on the surface of the base
   own_thickness  // limits of its own
 };
 inline constexpr std::array<std::string_view, 4> painted_region_names{"usual", "free", "on_base", "own_thickness"};

@@ -40,8 +40,9 @@ std::vector<int> nearest_vertices(const TriangleMesh& from, const TriangleMesh& 
   for (const double d : distance) sum += d;
   const double diagonal = (to.V.colwise().maxCoeff() - to.V.colwise().minCoeff()).norm();
   if (sum > max_mean_distance * diagonal * static_cast<double>(distance.size()))
-    throw Error(ErrorCode::invalid_input, painted_mesh_name,
-                "The painted model has another shape than the model of the relief: paint this model, or leave the painting out.");
+    throw Error(
+        ErrorCode::invalid_input, painted_mesh_name,
+        "The painted model has another shape than the model of the relief: paint this model, or leave the painting out.");
   return nearest;
 }
 
@@ -49,7 +50,8 @@ std::shared_ptr<const std::vector<int>> nearest_vertices(const OperationCall& ca
                                                          const LoadedModel& to) {
   const std::string key = "painted:" + from.key + ":" + to.key;
   if (auto known = call.session.find<const std::vector<int>>(key)) return known;
-  auto nearest = std::make_shared<const std::vector<int>>(nearest_vertices(from.model.mesh, to.model.mesh, call.context));
+  auto nearest =
+      std::make_shared<const std::vector<int>>(nearest_vertices(from.model.mesh, to.model.mesh, call.context));
   call.session.keep(key, nearest, 1e-6 * static_cast<double>(nearest->size() * sizeof(int)));
   return nearest;
 }
@@ -127,7 +129,8 @@ LoadedPainting load_painting(const OperationCall& call, const LoadedModel& model
   }
   const auto painted = load_model(call, painted_mesh_name);
   loaded.painting = read_input(call, *painted);
-  if (painted->key != model.key) loaded.painting = painting_of(loaded.painting, *nearest_vertices(call, model, *painted));
+  if (painted->key != model.key)
+    loaded.painting = painting_of(loaded.painting, *nearest_vertices(call, model, *painted));
   return loaded;
 }
 

@@ -19,9 +19,9 @@ struct LoadedPainting {
 };
 
 /// The input "painting" where there is one, else the numbers of the model's own vertices (painting_file.h). With
-/// "painted_mesh" the painting is that model's, and every vertex of `model` takes the values of the vertex nearest to it
-/// on the surface. Throws Error{invalid_input}: see read_painting; a painted model that is not the same shape; a painted
-/// model without a painting.
+/// "painted_mesh" the painting is that model's, and every vertex of `model` takes the values of the vertex nearest to
+/// it on the surface. Throws Error{invalid_input}: see read_painting; a painted model that is not the same shape; a
+/// painted model without a painting.
 LoadedPainting load_painting(const OperationCall& call, const LoadedModel& model);
 
 }  // namespace formwright

@@ -15,8 +15,7 @@ inline Json painted_vertices(const Painting& painting) {
   Json counts = {{"matters_more", (painting.weight.array() > 1).count()},
                  {"matters_less", (painting.weight.array() < 1).count()}};
   for (std::size_t k = 1; k < painted_region_names.size(); ++k)
-    counts[std::string(painted_region_names[k])] =
-        std::ranges::count(painting.region, static_cast<PaintedRegion>(k));
+    counts[std::string(painted_region_names[k])] = std::ranges::count(painting.region, static_cast<PaintedRegion>(k));
   return counts;
 }
 

@@ -37,13 +37,12 @@ class Checker {
     // Without regions, vertices that have a depth of their own have it by that.
     if (region.size() == 0)
       for (Eigen::Index i = 0; i < depth->size(); ++i) {
-        const bool own = (thickness.size() > 0 && !std::isnan(thickness[i])) ||
-                         (carve.size() > 0 && !std::isnan(carve[i]));
+        const bool own =
+            (thickness.size() > 0 && !std::isnan(thickness[i])) || (carve.size() > 0 && !std::isnan(carve[i]));
         painting.region.push_back(own ? PaintedRegion::own_thickness : PaintedRegion::usual);
       }
     if (thickness.size() > 0) painting.thickness_mm = depths_of(thickness, painting, "thickness_mm", 0);
-    if (carve.size() > 0)
-      painting.carve_depth_mm = depths_of(carve, painting, "carve_depth_mm", -max_painted_depth_mm);
+    if (carve.size() > 0) painting.carve_depth_mm = depths_of(carve, painting, "carve_depth_mm", -max_painted_depth_mm);
     return painting;
   }
 
@@ -111,6 +110,7 @@ Column column_of(const Checker& checker, const Json& list, const std::string& na
     checker.refuse(name + " has " + std::to_string(list.size()) + " values for " + std::to_string(vertices) +
                    " vertices: give one for each, or runs [first, count, value].");
   Eigen::Index next = 0;
+  std::int64_t in_runs = 0;
   for (const Json& item : list) {
     if (!runs) {
       column[next++] = value_of(item);
@@ -123,7 +123,9 @@ Column column_of(const Checker& checker, const Json& list, const std::string& na
       checker.refuse("a run of " + name + " begins at vertex " + std::to_string(first) + " and has " +
                      std::to_string(count) + " vertices, but they count from 0 to " + std::to_string(vertices - 1) +
                      ": correct it.");
-    column.segment(first, count).setConstant(value_of(item[2]));
+    in_runs += count;
+    if (in_runs > vertices) checker.refuse("the runs of " + name + " overlap: give every vertex at most one value.");
+    column.segment(static_cast<Eigen::Index>(first), static_cast<Eigen::Index>(count)).setConstant(value_of(item[2]));
   }
   return column;
 }
@@ -134,7 +136,8 @@ PaintingFile read_painting(ByteView text, const std::string& where, const std::s
                            const std::vector<int>& vertex_counts, const std::string& of) {
   const Checker checker(where, file_name);
   const Json file = parse_json_text(as_text(text));
-  if (!file.is_object()) checker.refuse("it is not a painting: give a JSON object with \"vertices\", \"weight\" and \"region\".");
+  if (!file.is_object())
+    checker.refuse("it is not a painting: give a JSON object with \"vertices\", \"weight\" and \"region\".");
   for (const auto& [name, value] : file.items())
     if (name != "vertices" && std::ranges::find(painted_columns, std::string_view(name)) == painted_columns.end())
       checker.refuse("it has \"" + name.substr(0, 40) +

@@ -17,15 +17,15 @@ struct PaintingFile {
   Painting painting;
 };
 
-/// {"vertices": n, "weight": ..., "region": ..., "thickness_mm": ..., "carve_depth_mm": ...}. Each list has n values, or
-/// runs [first vertex, number of vertices, value]; what no run names is not painted. Regions are numbers or names.
+/// {"vertices": n, "weight": ..., "region": ..., "thickness_mm": ..., "carve_depth_mm": ...}. Each list has n values,
+/// or runs [first vertex, number of vertices, value]; what no run names is not painted. Regions are numbers or names.
 /// `vertex_counts`: those that `vertices` may be; `of`: what has so many, for the sentence.
 /// Throws Error{invalid_input, where}: see check_painting; text that is not of this form; another number of vertices.
 PaintingFile read_painting(ByteView text, const std::string& where, const std::string& file_name,
                            const std::vector<int>& vertex_counts, const std::string& of);
 
-/// The painting that the columns of a model hold; empty without any. Throws as check_painting does, and for columns with
-/// values that are not numbers.
+/// The painting that the columns of a model hold; empty without any. Throws as check_painting does, and for columns
+/// with values that are not numbers.
 Painting painting_of_columns(const ModelColumns& columns, const std::string& where, const std::string& file_name);
 
 /// The same as columns, those that are there, with the values in force at every vertex.

@@ -82,6 +82,15 @@ describe('what is painted', () => {
     expect(paintedOfAttributes({ quality: of([1]) }, 1)).toBeNull();
     const painted = paintedOfAttributes({ weight: of([3, 1]), region: of([0, 2]) }, 2);
     expect(painted && [0, 1].map((v) => kindAt(painted, v))).toEqual(['more', 'on_base']);
+    const carved = paintedOfAttributes({ carve_depth_mm: of([1, 2]) }, 2);
+    expect(carved && JSON.parse(paintingJson(carved))).toEqual({
+      vertices: 2,
+      region: [[0, 2, 'own_thickness']],
+      carve_depth_mm: [
+        [0, 1, 1],
+        [1, 1, 2],
+      ],
+    });
   });
 });
 

@@ -27,7 +27,7 @@ function colourOf(token: string): Colour {
   return [(number >> 16) / 255, ((number >> 8) & 255) / 255, (number & 255) / 255];
 }
 
-export const themeChanges = signal(0);
+const themeChanges = signal(0);
 
 /** sRGB per vertex, 0..1. */
 function coloursNow(session: ReliefSession): Float32Array | null {

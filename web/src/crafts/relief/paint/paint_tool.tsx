@@ -24,6 +24,8 @@ const kindHelp: Readonly<Record<PaintKind, string>> = {
   own_thickness: 'Stands out as far as is set here, not as far as the rest.',
 };
 
+const eraseHelp = 'Takes all paint away.';
+
 const fills: readonly { readonly what: Fill; readonly label: string }[] = [
   { what: 'facing', label: 'The side towards the viewer' },
   { what: 'away', label: 'The side away from the viewer' },
@@ -58,6 +60,7 @@ export function PaintTool({ session, viewport }: ToolProps) {
           </Button>
         </div>
         <Kinds session={session} />
+        <p class="paint-words">{paint.kind.value === null ? eraseHelp : kindHelp[paint.kind.value]}</p>
         <Brush session={session} />
         <div class="row">
           <Menu
@@ -92,13 +95,13 @@ function Kinds({ session }: { readonly session: ReliefSession }) {
   const vertices = painted?.values.region.length ?? 1;
   const chosen = paint.kind.value;
   return (
-    <div class="paint-kinds" role="radiogroup" aria-label="Paint">
+    <div class="paint-kinds" role="group" aria-label="Paint">
       {[...paintKinds, null].map((kind) => {
         const count = kind && of ? of[kind] : 0;
         const name = kind === null ? 'Erase' : kindNames[kind];
         return (
           <div key={name} class="row paint-kind">
-            <label class="grow" title={kind === null ? 'Takes all paint away.' : kindHelp[kind]}>
+            <label class="grow" title={kind === null ? eraseHelp : kindHelp[kind]}>
               <input
                 type="radio"
                 name="paint-kind"

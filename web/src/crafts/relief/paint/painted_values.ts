@@ -10,8 +10,10 @@ export interface Painted {
   readonly weight: Float32Array;
   /** 0: as the rest, else a number of `regions`. */
   readonly region: Uint8Array;
-  /** mm, where the region is its own thickness. */
+  /** mm, where the region is its own thickness; NaN: as the rest. */
   readonly thickness: Float32Array;
+  /** The same behind the base, as a model's file may say it. */
+  readonly carve: Float32Array;
 }
 
 /** By their numbers, as the operation names them. */
@@ -20,13 +22,15 @@ const regions = ['usual', 'free', 'on_base', 'own_thickness'];
 export const unpainted = (vertices: number): Painted => ({
   weight: new Float32Array(vertices).fill(1),
   region: new Uint8Array(vertices),
-  thickness: new Float32Array(vertices),
+  thickness: new Float32Array(vertices).fill(NaN),
+  carve: new Float32Array(vertices).fill(NaN),
 });
 
-const copyOf = ({ weight, region, thickness }: Painted): Painted => ({
+const copyOf = ({ weight, region, thickness, carve }: Painted): Painted => ({
   weight: weight.slice(),
   region: region.slice(),
   thickness: thickness.slice(),
+  carve: carve.slice(),
 });
 
 export interface Paint {
@@ -45,7 +49,9 @@ export function paintOn(painted: Painted, vertices: Iterable<number>, { kind, fa
     if (weight !== null) painted.weight[v] = weight;
     else painted.region[v] = region;
     if (kind === null) painted.weight[v] = 1;
-    if (kind === 'own_thickness') painted.thickness[v] = thickness_mm;
+    if (kind !== 'own_thickness') continue;
+    painted.thickness[v] = thickness_mm;
+    painted.carve[v] = NaN;
   }
 }
 
@@ -60,7 +66,7 @@ export function without(painted: Painted, kind: PaintKind): Painted {
   return result;
 }
 
-export function isOf({ weight, region }: Painted, vertex: number, kind: PaintKind): boolean {
+function isOf({ weight, region }: Painted, vertex: number, kind: PaintKind): boolean {
   const w = weight[vertex] ?? 1;
   if (kind === 'more') return w > 1;
   if (kind === 'less') return w < 1;
@@ -103,12 +109,15 @@ const rounded = (x: number): number => Number(x.toPrecision(5));
 
 /** The operation's input: only what is painted, as runs of vertices that follow each other. */
 export function paintingJson(painted: Painted): string {
-  const { weight, region, thickness } = painted;
+  const { weight, region, thickness, carve } = painted;
   const n = region.length;
+  const depthAt = (depths: Float32Array, v: number) =>
+    isOf(painted, v, 'own_thickness') && !Number.isNaN(depths[v]) ? rounded(depths[v] ?? 0) : null;
   const lists = {
     weight: runsOf(n, (v) => (weight[v] === 1 ? null : rounded(weight[v] ?? 1))),
     region: runsOf(n, (v) => (region[v] ? (regions[region[v]] ?? null) : null)),
-    thickness_mm: runsOf(n, (v) => (isOf(painted, v, 'own_thickness') ? rounded(thickness[v] ?? 0) : null)),
+    thickness_mm: runsOf(n, (v) => depthAt(thickness, v)),
+    carve_depth_mm: runsOf(n, (v) => depthAt(carve, v)),
   };
   const there = Object.entries(lists).filter(([, runs]) => runs.length > 0);
   return JSON.stringify({ vertices: n, ...Object.fromEntries(there) });
@@ -129,12 +138,15 @@ export function paintedOf(text: string, vertices: number): Painted | null {
   const fill = (name: string, set: (v: number, value: number | string) => void) => {
     const runs = lists[name];
     if (!Array.isArray(runs)) return;
+    let left = vertices; // the operation refuses runs that overlap
     for (const [first, count, value] of runs as Run[])
-      for (let v = Math.max(0, first); v < Math.min(vertices, first + count); ++v) set(v, value);
+      for (let v = Math.max(0, first); v < Math.min(vertices, first + count) && left > 0; ++v, --left)
+        set(v, value);
   };
   fill('weight', (v, value) => (painted.weight[v] = Number(value)));
   fill('region', (v, value) => (painted.region[v] = Math.max(0, regions.indexOf(String(value)))));
   fill('thickness_mm', (v, value) => (painted.thickness[v] = Number(value)));
+  fill('carve_depth_mm', (v, value) => (painted.carve[v] = Number(value)));
   return painted;
 }
 
@@ -143,13 +155,14 @@ export function paintedOfAttributes(
   attributes: Readonly<Record<string, Float32Array>>,
   vertices: number,
 ): Painted | null {
-  const { weight, region, thickness_mm } = attributes;
-  if (!weight && !region && !thickness_mm) return null;
+  const { weight, region, thickness_mm, carve_depth_mm } = attributes;
+  if (!weight && !region && !thickness_mm && !carve_depth_mm) return null;
   const painted = unpainted(vertices);
   for (let v = 0; v < vertices; ++v) {
     painted.weight[v] = weight?.[v] ?? 1;
-    painted.region[v] = region?.[v] ?? (thickness_mm ? 3 : 0);
-    painted.thickness[v] = thickness_mm?.[v] ?? 0;
+    painted.region[v] = region?.[v] ?? (thickness_mm || carve_depth_mm ? 3 : 0);
+    painted.thickness[v] = thickness_mm?.[v] ?? NaN;
+    painted.carve[v] = carve_depth_mm?.[v] ?? NaN;
   }
   return painted;
 }

@@ -151,12 +151,15 @@ TEST_CASE("ReliefPainting.ComesBackWithTheReliefAndCanBeUsedAgain") {
   const Files again{{"mesh", plain}, {"painting", {"relief.ply", output(first, "relief.ply")}}},
       json{{"mesh", plain}, {"painting", json_file(runs_of(model))}};
   for (const Files& files : {again, json}) {
-    const JobResult second = relief(session, files);
-    CHECK(column(read(output(second, "relief.ply")), "lambda") == column(back, "lambda"));
+    Session fresh;  // a second solve of one solver starts from the first one's solution
+    const JobResult second = relief(fresh, files);
+    const bool equal = column(read(output(second, "relief.ply")), "lambda") == column(back, "lambda");
+    CHECK(equal);
   }
   const JobResult unpainted = relief(session, {{"mesh", plain}});
   CHECK(unpainted.report["painted_vertices"].is_null());
-  CHECK(column(read(output(unpainted, "relief.ply")), "lambda") != column(back, "lambda"));
+  const bool changed = column(read(output(unpainted, "relief.ply")), "lambda") != column(back, "lambda");
+  CHECK(changed);
 }
 
 TEST_CASE("ReliefPainting.GltfAttributesAreReadAndImportKeepsThem") {

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "base/parallel.h"
-#include "relief/painting/painted_bounds.h"
+#include "relief/base/painted_bounds.h"
 
 namespace formwright {
 namespace {

@@ -1,9 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The relief's part of a project.
 import type { JobInput, JsonObject } from '../../jobs/contract';
+import type { BlobReference } from '../../project/document';
 import type { Companion, CraftDocument, CraftResult, Subject } from '../../shared/session/craft_document';
 import { CraftCommands, emptyCraft, sameRequest } from '../../shared/session/craft_document';
-import type { Painting } from './paint/painting';
+
+/** What is painted on a model. */
+export interface Painting {
+  /** The mesh whose vertices are painted. */
+  readonly on: string;
+  /** As the operation reads it; null while nothing is painted. */
+  readonly file: BlobReference | null;
+}
 
 export interface ReliefDocument extends CraftDocument {
   /** The file of the surface that the relief is worked into; null for a built-in shape. */

@@ -1,17 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The painting in the relief's document: on which model, and the file that the operation reads.
 import type { JobInput } from '../../../jobs/contract';
-import type { BlobReference } from '../../../project/document';
 import { meshInput } from '../../../shared/session/craft_document';
-import type { ReliefDocument } from '../relief_document';
+import type { Painting, ReliefDocument } from '../relief_document';
 import { relief } from '../relief_document';
-
-export interface Painting {
-  /** The mesh whose vertices are painted. */
-  readonly on: string;
-  /** Null while nothing is painted. */
-  readonly file: BlobReference | null;
-}
 
 /** That of the model in force. */
 export const paintingOf = ({ model, painting }: ReliefDocument): Painting | null =>

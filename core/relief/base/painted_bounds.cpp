@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "relief/painting/painted_bounds.h"
+#include "relief/base/painted_bounds.h"
 
 #include <algorithm>
 #include <cmath>

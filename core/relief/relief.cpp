@@ -125,6 +125,19 @@ bool can_hold(const InequalityRow& row, const DepthBounds& bounds, const Bounded
   return !(best < row.bound + room);
 }
 
+/// Whether what is in front in a row has a vertex that is held at one depth, and what is behind has no room behind
+/// that: such rows do not contradict the limits one by one, but many of them do together, which takes long to find out.
+bool is_held_in_front(const InequalityRow& row, const DepthBounds& bounds, double room) {
+  if (!bounds.painted()) return false;
+  double farthest_behind = -infinity, nearest_held = infinity;
+  for (std::size_t k = 0; k < row.index.size(); ++k) {
+    const int i = row.index[k];
+    if (row.coefficient[k] > 0) farthest_behind = std::max(farthest_behind, bounds.farthest[i]);
+    else if (bounds.reach[i] == bounds.farthest[i]) nearest_held = std::min(nearest_held, bounds.farthest[i]);
+  }
+  return farthest_behind <= nearest_held + room && nearest_held < infinity;
+}
+
 /// Whether a row has a vertex that is painted with limits closer than the usual ones.
 bool is_pressed(const InequalityRow& row, const DepthBounds& bounds) {
   return bounds.painted() && std::ranges::any_of(row.index, [&](int i) {
@@ -288,7 +301,8 @@ Relief ReliefSolver::solve_within(const ReliefOptions& options, const DepthBound
   } rows(order_rows_, constraints.rows, lent);
   if (!lent)
     std::ranges::copy_if(order_rows_, std::back_inserter(constraints.rows), [&](const InequalityRow& row) {
-      return can_hold(row, bounds, constraints, bounds.painted() ? painted_row_room * slab : 0);
+      const double room = bounds.painted() ? painted_row_room * slab : 0;
+      return can_hold(row, bounds, constraints, room) && !is_held_in_front(row, bounds, room);
     });
 
   Relief relief;

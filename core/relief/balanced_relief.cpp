@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "relief/bounds/order_repair.h"
 #include "relief/bounds/separators.h"
@@ -16,6 +17,7 @@ constexpr double inner_share = 0.05;     // by how much
 constexpr double order_room = 1e-8;      // of the thickness
 constexpr double separator_room = 1e-4;  // of the thickness
 constexpr double box_share = 0.02;       // of the way between two bounds: how far from them a later start keeps
+constexpr double min_width = 1e-6;       // of the thickness, between two bounds: a barrier needs room
 constexpr double first_decrease = 3e-3;
 constexpr int max_rounds = 3, later_steps = 6;
 // Later rounds start near their end.
@@ -47,14 +49,32 @@ void repair(const SlabProblem& problem, const Eigen::VectorXd& feasible, Eigen::
   u = u.cwiseMax(problem.lower).cwiseMin(problem.upper);
 }
 
+/// The bounds, those of vertices that are held at one depth a little apart. The result is clipped to the bounds
+/// themselves.
+std::pair<Eigen::VectorXd, Eigen::VectorXd> with_room(const SlabProblem& problem) {
+  const Eigen::VectorXd middle = 0.5 * (problem.lower + problem.upper);
+  const double half = 0.5 * min_width * problem.thickness;
+  Eigen::VectorXd lower = problem.lower, upper = problem.upper;
+  for (Eigen::Index i = 0; i < lower.size(); ++i)
+    if (upper[i] - lower[i] < 2 * half) {
+      lower[i] = middle[i] - half;
+      upper[i] = middle[i] + half;
+    }
+  return {lower, upper};
+}
+
 /// `start` a little towards linear compression into the middle of the bounds, so that none is touched.
-Eigen::VectorXd off_the_bounds(const SlabProblem& problem, const Eigen::VectorXd& start) {
+Eigen::VectorXd off_the_bounds(const SlabProblem& problem, const Eigen::VectorXd& start, const Eigen::VectorXd& lower,
+                               const Eigen::VectorXd& upper) {
   const Eigen::VectorXd linear = linear_compression(problem.frame, problem.bounds);
   Eigen::VectorXd u(start.size());
   for (Eigen::Index i = 0; i < u.size(); ++i) {
     double middle = linear[i];
     if (problem.bounds.bounded[static_cast<std::size_t>(i)]) {
-      const double low = problem.lower[i], size = problem.upper[i] - low;
+      // A vertex painted free has far more room than it should start in.
+      const bool free = problem.bounds.nearest_allowed(i) < problem.bounds.nearest[i];
+      const double low = free ? problem.frame.u_for_depth(static_cast<int>(i), problem.bounds.nearest[i]) : lower[i];
+      const double size = upper[i] - low;
       const double share = std::clamp((linear[i] - low) / size, 0.0, 1.0);
       middle = low + (0.5 + inner_part * (share - 0.5)) * size;
     }
@@ -101,7 +121,8 @@ BalancedResult balanced_relief(BalancedSolver& solver, const SlabProblem& proble
   if (!(energy_unit > 0) || solver.normals().corners().empty()) return result;  // the model itself fits
   result.start_objective = result.objective = solver.objective(start, settings.last_beta, energy_unit);
   std::vector<Separator> kind(problem.rows.size(), Separator::none);
-  Eigen::VectorXd lower = problem.lower, upper = problem.upper, point = off_the_bounds(problem, start);
+  const auto [bound_lower, bound_upper] = with_room(problem);
+  Eigen::VectorXd lower = bound_lower, upper = bound_upper, point = off_the_bounds(problem, start, lower, upper);
   // While rows may still become separators, it need not be exact.
   BalancedSettings now = settings;
   now.decrease = std::max(settings.decrease, first_decrease);
@@ -120,8 +141,8 @@ BalancedResult balanced_relief(BalancedSolver& solver, const SlabProblem& proble
       result.converged = found.converged;
     }
     if (!broken && round > 0) break;
-    lower = problem.lower;
-    upper = problem.upper;
+    lower = bound_lower;
+    upper = bound_upper;
     add_separators(problem.rows, kind, found.u, separator_room * problem.thickness, lower, upper);
     point = inside(found.u, lower, upper, problem.thickness);
     now.first_beta = std::min(settings.first_beta, later_beta * settings.last_beta);

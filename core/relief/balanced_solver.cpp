@@ -29,8 +29,8 @@ int slot_of(const SparseMatrix& lower, int a, int b) {
 }  // namespace
 
 BalancedSolver::BalancedSolver(const ViewFrame& frame, const Triangles& F, const Visibility& visibility,
-                               SparseMatrix lower_Q, Context& context)
-    : normals_(frame, F, visibility), Q_(std::move(lower_Q)) {
+                               SparseMatrix lower_Q, Context& context, const Eigen::VectorXd& painted_weight)
+    : normals_(frame, F, visibility, painted_weight), Q_(std::move(lower_Q)) {
   Q_.makeCompressed();
   matrix_ = Q_;
   slot_.reserve(normals_.corners().size());

@@ -34,9 +34,9 @@ struct BalancedResult {
 class BalancedSolver {
  public:
   /// `lower_Q`: lower triangle of Q with E(u) = u^T Q u, every diagonal entry stored. Orders the rows for factoring.
-  /// Throws Error: cancelled, out_of_memory.
+  /// `painted_weight`: as NormalTerm has it. Throws Error: cancelled, out_of_memory.
   BalancedSolver(const ViewFrame& frame, const Triangles& F, const Visibility& visibility, SparseMatrix lower_Q,
-                 Context& context);
+                 Context& context, const Eigen::VectorXd& painted_weight = {});
 
   /// `start` (n): strictly within `lower` and `upper` (n), which are -inf / +inf where free. `energy_unit`: E0 > 0.
   /// Throws Error: could_not_solve, cancelled, out_of_memory.

@@ -38,10 +38,10 @@ Positions on_grid(const Positions& moved, const HeightMap& map, double size_mm) 
 }
 
 /// Raises the map's nodes to the triangles over them; heights are first limited to [lowest, highest]. `covers`: (face,
-/// row, column) -> bool.
-template <class Covers>
+/// row, column) -> bool. `raised`: (face, row, column, barycentric coordinates), after a node was raised.
+template <class Covers, class Raised>
 void raise_to_envelope(HeightMap& map, const Positions& G, const Triangles& F, double lowest, double highest,
-                       const Covers& covers, Context& context) {
+                       const Covers& covers, const Raised& raised, Context& context) {
   for (Eigen::Index f = 0; f < F.rows(); ++f) {
     if (f % 65536 == 0) context.check_cancelled();
     const Vec3 a = G.row(F(f, 0)).transpose(), b = G.row(F(f, 1)).transpose(), c = G.row(F(f, 2)).transpose();
@@ -57,8 +57,10 @@ void raise_to_envelope(HeightMap& map, const Positions& G, const Triangles& F, d
         const double wc = ((b.x() - a.x()) * (y - a.y()) - (b.y() - a.y()) * (x - a.x())) / doubled;
         const double wa = 1 - wb - wc;
         if (wa < -1e-9 || wb < -1e-9 || wc < -1e-9 || !covers(f, y, x)) continue;
-        const double height = std::clamp(wa * a.z() + wb * b.z() + wc * c.z(), lowest, highest);
-        map.at(y, x) = std::max(map.at(y, x), static_cast<float>(height));
+        const auto height = static_cast<float>(std::clamp(wa * a.z() + wb * b.z() + wc * c.z(), lowest, highest));
+        if (!(height > map.at(y, x))) continue;
+        map.at(y, x) = height;
+        raised(f, y, x, Vec3(wa, wb, wc));
       }
   }
 }
@@ -95,9 +97,15 @@ std::vector<float> base_heights(const HeightMap& map, const BaseSurface& base, d
   return heights;
 }
 
+/// How far each covered node may be before the base and behind it, mm. Empty where vertices have no limits of their
+/// own.
+struct NodeRoom {
+  std::vector<float> above, below;
+};
+
 /// The map with the envelope at the covered nodes, -infinity elsewhere, and its limits.
 HeightMap envelope_over(const CoveringMesh& mesh, double size_mm, PlateSize plate, double pixel_mm,
-                        const AllowedSpace& space, Context& context) {
+                        const AllowedSpace& space, NodeRoom& room, Context& context) {
   HeightMap map = empty_map(plate, pixel_mm);
   const auto range = space.base.depth_range(0.5 * plate.width_mm / size_mm, 0.5 * plate.height_mm / size_mm);
   const auto [least, largest] = range.value_or(std::pair{0.0, 0.0});
@@ -106,12 +114,28 @@ HeightMap envelope_over(const CoveringMesh& mesh, double size_mm, PlateSize plat
   std::ranges::fill(map.height_mm, -INFINITY);
   std::vector<int> band;
   if (mesh.band != nullptr && space.base.bands() != nullptr) band = node_bands(map, *space.base.bands(), size_mm);
-  const auto covers = [&](Eigen::Index face, int row, int column) {
-    return band.empty() || (*mesh.band)[static_cast<std::size_t>(face)] ==
-                               band[static_cast<std::size_t>(row) * static_cast<std::size_t>(map.columns) +
-                                    static_cast<std::size_t>(column)];
+  const auto node = [&](int row, int column) {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(map.columns) + static_cast<std::size_t>(column);
   };
-  raise_to_envelope(map, on_grid(mesh.V, map, size_mm), mesh.F, map.floor_mm, map.top_mm, covers, context);
+  const auto covers = [&](Eigen::Index face, int row, int column) {
+    return band.empty() || (*mesh.band)[static_cast<std::size_t>(face)] == band[node(row, column)];
+  };
+  const bool own_limits = mesh.above_mm != nullptr && mesh.below_mm != nullptr;
+  if (own_limits) {
+    room.above.resize(map.height_mm.size());
+    room.below.resize(map.height_mm.size());
+  }
+  const auto take_room = [&](Eigen::Index face, int row, int column, const Vec3& weights) {
+    if (!own_limits) return;
+    double above = 0, below = 0;
+    for (int k = 0; k < 3; ++k) {
+      above += weights[k] * (*mesh.above_mm)[mesh.F(face, k)];
+      below += weights[k] * (*mesh.below_mm)[mesh.F(face, k)];
+    }
+    room.above[node(row, column)] = static_cast<float>(std::min(above, space.above_mm));
+    room.below[node(row, column)] = static_cast<float>(std::min(below, space.below_mm));
+  };
+  raise_to_envelope(map, on_grid(mesh.V, map, size_mm), mesh.F, map.floor_mm, map.top_mm, covers, take_room, context);
   return map;
 }
 
@@ -123,7 +147,8 @@ HeightMap make_height_map(const Positions& moved, const Triangles& F, double siz
   map.top_mm = top_mm;
   const Positions G = on_grid(moved, map, size_mm);
   raise_to_envelope(
-      map, G, F, 0, top_mm, [](Eigen::Index, int, int) { return true; }, context);
+      map, G, F, 0, top_mm, [](Eigen::Index, int, int) { return true; }, [](Eigen::Index, int, int, const Vec3&) {},
+      context);
   for (Eigen::Index i = 0; i < G.rows(); ++i)
     if (G(i, 2) > top_mm * (1 - 1e-6)) {
       const int x = std::clamp(static_cast<int>(std::lround(G(i, 0))), 0, map.columns - 1);
@@ -137,17 +162,19 @@ HeightMap make_height_map(const CoveringMesh& mesh, double size_mm, PlateSize pl
                           const AllowedSpace& space, Context& context) {
   if (space.base.is_flat() && space.below_mm == 0)
     return make_height_map(mesh.V, mesh.F, size_mm, plate, pixel_mm, space.above_mm, context);
-  HeightMap map = envelope_over(mesh, size_mm, plate, pixel_mm, space, context);
+  NodeRoom room;
+  HeightMap map = envelope_over(mesh, size_mm, plate, pixel_mm, space, room, context);
   const std::vector<float> base = base_heights(map, space.base, size_mm, context);
-  const auto floor = static_cast<float>(map.floor_mm);
+  const auto floor = static_cast<float>(map.floor_mm), above = static_cast<float>(space.above_mm),
+             below = static_cast<float>(space.below_mm);
   for (std::size_t i = 0; i < base.size(); ++i) {
     float& height = map.height_mm[i];
     const bool covered = !std::isinf(height);
     if (std::isnan(base[i])) height = covered ? height : floor;
     else if (!covered) height = base[i];
     else
-      height = std::clamp(height, base[i] - static_cast<float>(space.below_mm),
-                          base[i] + static_cast<float>(space.above_mm));
+      height = std::min(std::max(height, base[i] - (room.below.empty() ? below : room.below[i])),
+                        base[i] + (room.above.empty() ? above : room.above[i]));
     height = std::max(height, floor);
   }
   return map;
@@ -155,7 +182,8 @@ HeightMap make_height_map(const CoveringMesh& mesh, double size_mm, PlateSize pl
 
 HeightMap make_bed_map(const CoveringMesh& mesh, double size_mm, PlateSize plate, double pixel_mm,
                        const AllowedSpace& space, Context& context) {
-  HeightMap map = envelope_over(mesh, size_mm, plate, pixel_mm, space, context);
+  NodeRoom room;
+  HeightMap map = envelope_over(mesh, size_mm, plate, pixel_mm, space, room, context);
   const std::vector<float> base = base_heights(map, space.base, size_mm, context);
   const auto floor = static_cast<float>(map.floor_mm);
   for (std::size_t i = 0; i < base.size(); ++i) {

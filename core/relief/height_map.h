@@ -50,6 +50,9 @@ struct CoveringMesh {
   const Positions& V;  // view coordinates
   const Triangles& F;
   const std::vector<int>* band = nullptr;  // of each triangle, which covers nodes of this band only; null: all
+  // Of each vertex, mm, how far it may be before the base and behind it, within the allowed space; null: as far as
+  // that.
+  const Eigen::VectorXd *above_mm = nullptr, *below_mm = nullptr;
 };
 
 /// The same over any base: the envelope where the mesh covers a node, kept within the allowed space there, and the

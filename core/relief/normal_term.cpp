@@ -21,7 +21,9 @@ double picture_area(const ViewFrame& frame, const std::array<int, 3>& corner) {
 }
 }  // namespace
 
-NormalTerm::NormalTerm(const ViewFrame& frame, const Triangles& F, const Visibility& visibility) : P_(frame.P) {
+NormalTerm::NormalTerm(const ViewFrame& frame, const Triangles& F, const Visibility& visibility,
+                       const Eigen::VectorXd& painted_weight)
+    : P_(frame.P) {
   rays_ = frame.kappa * frame.P;
   rays_.col(2).array() += 1;
   double sum = 0;
@@ -30,8 +32,11 @@ NormalTerm::NormalTerm(const ViewFrame& frame, const Triangles& F, const Visibil
     const std::array<int, 3> corner{F(f, 0), F(f, 1), F(f, 2)};
     const Vec3 a = P_.row(corner[0]).transpose();
     const Vec3 normal = (P_.row(corner[1]).transpose() - a).cross(P_.row(corner[2]).transpose() - a);
-    const double length = normal.norm(), area = picture_area(frame, corner);
+    const double length = normal.norm();
+    double area = picture_area(frame, corner);
     if (!(length > 0) || !(area > 0)) continue;
+    if (painted_weight.size() > 0)
+      area *= Vec3(painted_weight[corner[0]], painted_weight[corner[1]], painted_weight[corner[2]]).squaredNorm() / 3;
     corners_.push_back(corner);
     normal_.push_back(normal / length);
     share_.push_back(area);

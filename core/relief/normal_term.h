@@ -16,7 +16,10 @@ namespace formwright {
 class NormalTerm {
  public:
   /// Keeps a copy of what it needs. Without visible faces the term is 0.
-  NormalTerm(const ViewFrame& frame, const Triangles& F, const Visibility& visibility);
+  /// `painted_weight` (n, or empty): a face's share is multiplied by the mean of its corners' squares, as the energy of
+  /// eq. (3.13) multiplies by w_i^2, and the shares still add up to 1.
+  NormalTerm(const ViewFrame& frame, const Triangles& F, const Visibility& visibility,
+             const Eigen::VectorXd& painted_weight = {});
 
   /// The term and what Newton's method needs of each face, in the order of `corners`.
   struct FaceModel {

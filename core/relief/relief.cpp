@@ -5,7 +5,9 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <span>
 
+#include "base/sha256.h"
 #include "geometry/mesh/adjacency.h"
 #include "geometry/queries/ray_caster.h"
 #include "relief/appearance_energy.h"
@@ -18,6 +20,8 @@ namespace formwright {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
+// Of the slab: an order row between surfaces that are held where they touch is decided by round-off.
+constexpr double painted_row_room = 1e-6;
 constexpr double balanced_hidden_weight = 0.01;  // at most: hidden parts only have to give way
 // About 3.9 kB a vertex: 6 GB natively, and what fits into the 4 GB that WASM can have.
 constexpr int max_vertices = sizeof(void*) > 4 ? 1'500'000 : 600'000;
@@ -36,7 +40,7 @@ BoundedQpConstraints constraints_of(const ViewFrame& frame, const DepthBounds& b
   c.gauge = Eigen::VectorXd::Constant(n, 1.0 / static_cast<double>(n));
   for (int i = 0; i < n; ++i) {
     if (!bounds.bounded[static_cast<std::size_t>(i)]) continue;
-    c.lower[i] = frame.u_for_depth(i, bounds.nearest[i]);
+    c.lower[i] = frame.u_for_depth(i, bounds.nearest_allowed(i));
     c.upper[i] = frame.u_for_depth(i, bounds.farthest[i]);
     c.lower_slope[i] = 1 + frame.kappa * c.lower[i];
     c.upper_slope[i] = 1 + frame.kappa * c.upper[i];
@@ -110,8 +114,8 @@ Eigen::VectorXd settled(const ViewFrame& frame, const BoundedQpConstraints& c, c
 
 /// Whether a depth-order row can hold within the bounds. Over a triangle the base may bend by more than the relief is
 /// thick: a row that is interpolated there may contradict the bounds, which count more. On steps the rows within one
-/// step stay: their bounds are one slab.
-bool can_hold(const InequalityRow& row, const DepthBounds& bounds, const BoundedQpConstraints& c) {
+/// step stay: their bounds are one slab. `room`, in units of u: what a row needs to have to spare.
+bool can_hold(const InequalityRow& row, const DepthBounds& bounds, const BoundedQpConstraints& c, double room) {
   double best = 0;
   for (std::size_t k = 0; k < row.index.size(); ++k) {
     const int i = row.index[k];
@@ -119,15 +123,35 @@ bool can_hold(const InequalityRow& row, const DepthBounds& bounds, const Bounded
     if (bounds.group[at] != bounds.group[static_cast<std::size_t>(row.index.front())]) return false;
     best += row.coefficient[k] * (row.coefficient[k] > 0 ? c.upper[i] : c.lower[i]);
   }
-  return !(best < row.bound);
+  return !(best < row.bound + room);
 }
 
-/// w_i of eq. (3.13).
-Eigen::VectorXd vertex_weights(const Visibility& visibility, double hidden_weight) {
+/// Whether what is in front in a row has a vertex that is held at one depth, and what is behind has no room behind
+/// that: such rows do not contradict the limits one by one, but many of them do together, which takes long to find out.
+bool is_held_in_front(const InequalityRow& row, const DepthBounds& bounds, double room) {
+  if (!bounds.painted()) return false;
+  double farthest_behind = -infinity, nearest_held = infinity;
+  for (std::size_t k = 0; k < row.index.size(); ++k) {
+    const int i = row.index[k];
+    if (row.coefficient[k] > 0) farthest_behind = std::max(farthest_behind, bounds.farthest[i]);
+    else if (bounds.reach[i] == bounds.farthest[i]) nearest_held = std::min(nearest_held, bounds.farthest[i]);
+  }
+  return farthest_behind <= nearest_held + room && nearest_held < infinity;
+}
+
+/// Whether a row has a vertex that is painted with limits closer than the usual ones.
+bool is_pressed(const InequalityRow& row, const DepthBounds& bounds) {
+  return bounds.painted() && std::ranges::any_of(row.index, [&](int i) {
+           return bounds.above_of[i] < bounds.above || bounds.below_of[i] < bounds.below;
+         });
+}
+
+/// w_i of eq. (3.13). `painted`: n factors, or none.
+Eigen::VectorXd vertex_weights(const Visibility& visibility, double hidden_weight, const Eigen::VectorXd& painted) {
   Eigen::VectorXd weights(static_cast<Eigen::Index>(visibility.vertex.size()));
   for (Eigen::Index i = 0; i < weights.size(); ++i)
     weights[i] = visibility.vertex[static_cast<std::size_t>(i)] ? 1.0 : hidden_weight;
-  return weights;
+  return painted.size() > 0 ? weights.cwiseProduct(painted) : weights;
 }
 
 double order_violation(const std::vector<InequalityRow>& rows, const Eigen::VectorXd& u) {
@@ -154,7 +178,7 @@ Eigen::VectorXd ray_lengths(const ViewFrame& frame, const Eigen::VectorXd& u) {
 
 ReliefSolver::~ReliefSolver() = default;
 
-std::string ReliefSolver::key(const ReliefOptions& options) {
+std::string ReliefSolver::key(const ReliefOptions& options, const Eigen::VectorXd& painted_weight) {
   // The viewing distance counts in units of the width; everything else here is free of the size.
   Json key = {write_parameters(options).at("projection"), options.direction, options.up, options.hidden_weight,
               options.depth_order};
@@ -162,10 +186,15 @@ std::string ReliefSolver::key(const ReliefOptions& options) {
     if (options.distance_mm) key.push_back(*options.distance_mm / options.width_mm);
     else key.push_back(Json{options.field_of_view_deg});
   }
+  if (painted_weight.size() > 0)
+    key.push_back(
+        sha256_hex(std::as_bytes(std::span(painted_weight.data(), static_cast<std::size_t>(painted_weight.size())))));
   return key.dump();
 }
 
-ReliefSolver::ReliefSolver(const TriangleMesh& mesh, const ReliefOptions& options, Context& context) : F_(mesh.F) {
+ReliefSolver::ReliefSolver(const TriangleMesh& mesh, const ReliefOptions& options, Context& context,
+                           Eigen::VectorXd painted_weight)
+    : F_(mesh.F), painted_weight_(std::move(painted_weight)) {
   if (mesh.vertex_count() > max_vertices) {
     throw Error(ErrorCode::invalid_input, "mesh",
                 "The model has " + std::to_string(mesh.vertex_count()) +
@@ -186,7 +215,8 @@ ReliefSolver::ReliefSolver(const TriangleMesh& mesh, const ReliefOptions& option
     throw Error(ErrorCode::invalid_input, "direction",
                 "Nothing of the model is visible from this viewpoint: choose another looking direction.");
   context.progress(0.25, "Measuring the surface");
-  energy_ = std::make_unique<AppearanceEnergy>(frame_, F_, vertex_weights(visibility_, options.hidden_weight));
+  energy_ = std::make_unique<AppearanceEnergy>(frame_, F_,
+                                               vertex_weights(visibility_, options.hidden_weight, painted_weight_));
   SparseMatrix Q = energy_->lower_hessian(context);
   // The mean curvature scale of the mesh sits in Q; a unit diagonal keeps every tolerance below free of it.
   Q *= 1 / Q.diagonal().mean();
@@ -196,24 +226,37 @@ ReliefSolver::ReliefSolver(const TriangleMesh& mesh, const ReliefOptions& option
   seconds_factorise_ = watch.seconds();
 }
 
-/// Rows that contradict the bounds only together are left out as a whole, where the bounds are not the same everywhere.
-BoundedQpSolution ReliefSolver::solve_on_base(BoundedQpConstraints& constraints, const BoundedQpOptions& options,
-                                              bool even, Context& context) {
-  try {
-    return qp_.solve(constraints, options, context);
-  } catch (const Error& error) {
-    if (even || constraints.rows.empty() || error.code() != ErrorCode::could_not_solve) throw;
+/// Rows that contradict the bounds only together are left out where these are not the same everywhere: first those of
+/// painted places, then all.
+BoundedQpSolution ReliefSolver::solve_on_base(BoundedQpConstraints& constraints, const DepthBounds& bounds,
+                                              const BoundedQpOptions& options, Context& context) {
+  if (bounds.painted() && constraints.lower == constraints.upper) {
+    // Every vertex is held where it is painted.
+    constraints.rows.clear();
+    BoundedQpSolution held;
+    held.u = constraints.lower;
+    held.m = Eigen::VectorXd::Zero(constraints.group_count);
+    return held;
   }
-  constraints.rows.clear();
-  return qp_.solve(constraints, options, context);
+  for (;;) {
+    try {
+      return qp_.solve(constraints, options, context);
+    } catch (const Error& error) {
+      if (bounds.even || constraints.rows.empty() || error.code() != ErrorCode::could_not_solve) throw;
+    }
+    if (std::erase_if(constraints.rows, [&](const InequalityRow& row) { return is_pressed(row, bounds); }) == 0)
+      constraints.rows.clear();
+  }
 }
 
 int ReliefSolver::balance(const ReliefOptions& options, const DepthBounds& bounds,
                           const BoundedQpConstraints& constraints, Eigen::VectorXd& u, Context& context) {
   if (!balanced_) {
-    const AppearanceEnergy energy(frame_, F_,
-                                  vertex_weights(visibility_, std::min(balanced_hidden_weight, options.hidden_weight)));
-    balanced_ = std::make_unique<BalancedSolver>(frame_, F_, visibility_, energy.lower_hessian(context), context);
+    const AppearanceEnergy energy(
+        frame_, F_,
+        vertex_weights(visibility_, std::min(balanced_hidden_weight, options.hidden_weight), painted_weight_));
+    balanced_ = std::make_unique<BalancedSolver>(frame_, F_, visibility_, energy.lower_hessian(context), context,
+                                                 painted_weight_);
   }
   const BalancedResult balanced = balanced_relief(
       *balanced_,
@@ -224,8 +267,9 @@ int ReliefSolver::balance(const ReliefOptions& options, const DepthBounds& bound
   return balanced.steps;
 }
 
-Relief ReliefSolver::solve(const ReliefOptions& options, const BaseSurface& base, Context& context) {
-  const DepthBounds bounds = depth_bounds(frame_, visibility_, base, options, context);
+Relief ReliefSolver::solve(const ReliefOptions& options, const BaseSurface& base, Context& context,
+                           const Painting& painting) {
+  const DepthBounds bounds = depth_bounds(frame_, visibility_, base, options, context, painting);
   if (bounds.groups == 1) return solve_within(options, bounds, nullptr, context);
   const BandBorders borders(frame_, *base.bands(), bounds);
   return solve_within(options, bounds, &borders, context);
@@ -239,6 +283,7 @@ Relief ReliefSolver::solve(const ReliefOptions& options, const DepthBounds& boun
 Relief ReliefSolver::solve_within(const ReliefOptions& options, const DepthBounds& bounds, const GroupBorders* borders,
                                   Context& context) {
   BoundedQpConstraints constraints = constraints_of(frame_, bounds);
+  const double slab = (options.thickness_mm + options.carve_depth_mm) / options.width_mm;
   if (options.appearance == Appearance::balanced && borders != nullptr)
     throw Error(
         ErrorCode::invalid_input, "appearance",
@@ -257,8 +302,10 @@ Relief ReliefSolver::solve_within(const ReliefOptions& options, const DepthBound
     }
   } rows(order_rows_, constraints.rows, lent);
   if (!lent)
-    std::ranges::copy_if(order_rows_, std::back_inserter(constraints.rows),
-                         [&](const InequalityRow& row) { return can_hold(row, bounds, constraints); });
+    std::ranges::copy_if(order_rows_, std::back_inserter(constraints.rows), [&](const InequalityRow& row) {
+      const double room = bounds.painted() ? painted_row_room * slab : 0;
+      return can_hold(row, bounds, constraints, room) && !is_held_in_front(row, bounds, room);
+    });
 
   Relief relief;
   set_start(frame_, bounds, constraints);
@@ -266,11 +313,11 @@ Relief ReliefSolver::solve_within(const ReliefOptions& options, const DepthBound
   constraints.start_satisfies_rows = lent;
   BoundedQpOptions qp_options;
   qp_options.method = options.method;
-  qp_options.violation_tolerance = 1e-9 * (options.thickness_mm + options.carve_depth_mm) / options.width_mm;
+  qp_options.violation_tolerance = 1e-9 * slab;
   {
     const auto span =
         context.span(0, options.appearance == Appearance::detail ? 0.9 : 0.4, "Fitting into the thickness");
-    relief.qp = solve_on_base(constraints, qp_options, lent, context);
+    relief.qp = solve_on_base(constraints, bounds, qp_options, context);
   }
   const Eigen::VectorXd m = scales(constraints, relief.qp);
   relief.u = settled(frame_, constraints, relief.qp.u, m);
@@ -287,8 +334,9 @@ Relief ReliefSolver::solve_within(const ReliefOptions& options, const DepthBound
   relief.seen = in_steps ? frame_.moved(looked_at) : relief.moved;
   relief.normal_error = normal_error(frame_, F_, visibility_, relief.seen);
   if (in_steps) relief.pieces = cut_into_bands(frame_, F_, relief.qp.u, m, bounds, *borders, context);
+  const bool own_bounds = in_steps || bounds.painted();
   const Eigen::VectorXd linear = linear_compression(
-      frame_, in_steps ? depth_bounds(frame_, visibility_, BaseSurface(), options, context) : bounds);
+      frame_, own_bounds ? depth_bounds(frame_, visibility_, BaseSurface(), options, context) : bounds);
   relief.energy_linear = (*energy_)(linear);
   relief.seen_linear = frame_.moved(linear);
   relief.normal_error_linear = normal_error(frame_, F_, visibility_, relief.seen_linear);
@@ -308,6 +356,10 @@ Relief ReliefSolver::solve_within(const ReliefOptions& options, const DepthBound
                   relief.lambda_mm[i] - relief.lambda_max_mm[i]});
   }
   relief.vertices_beyond_base = bounds.missed;
+  if (bounds.painted()) {
+    relief.above_mm = size * (in_steps ? relief.pieces.above : bounds.above_of);
+    relief.below_mm = size * (in_steps ? relief.pieces.below : bounds.below_of);
+  }
   relief.order_rows = static_cast<int>(constraints.rows.size());
   if (!lent) relief.order_rows_left_out = static_cast<int>(order_rows_.size() - constraints.rows.size());
   relief.order_violation_max_mm = size * order_violation(constraints.rows, relief.u);

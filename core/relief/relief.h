@@ -32,27 +32,31 @@ struct Relief {
   int vertices_beyond_base = 0;  // free, because their rays miss the base
   int balanced_steps = 0;        // of BalancedSolver; 0 for Appearance::detail
   Positions seen,
-      seen_linear;       // n x 3, what looks like the model: `moved`, in steps before it is cut; and plain scaling
-  ReliefPieces pieces;   // on a base in steps; else empty
-  BoundedQpSolution qp;  // statistics; qp.u is in the gauge of mean s = 1
+      seen_linear;      // n x 3, what looks like the model: `moved`, in steps before it is cut; and plain scaling
+  ReliefPieces pieces;  // on a base in steps; else empty
+  Eigen::VectorXd above_mm, below_mm;  // where limits of depth are painted, else empty: of each vertex of `moved` or of
+                                       // the pieces, how far it may be before the base and behind it
+  BoundedQpSolution qp;                // statistics; qp.u is in the gauge of mean s = 1
 };
 
-/// Everything that depends on the mesh and the viewpoint alone, the factorisation included: other bounds
-/// (thickness) and other sizes (width) are solved without factoring again.
+/// Everything that depends on the mesh, the viewpoint and the weights alone, the factorisation included: other bounds
+/// (thickness, painted regions) and other sizes (width) are solved without factoring again.
 class ReliefSolver {
  public:
   /// `mesh`: manifold and oriented (repair it first), in any unit.
   /// Throws Error: invalid_input (see make_view_frame; nothing visible; too many vertices), could_not_solve, cancelled,
-  /// out_of_memory.
-  ReliefSolver(const TriangleMesh& mesh, const ReliefOptions& options, Context& context);
+  /// out_of_memory. `painted_weight`: Painting::weight of the mesh's vertices.
+  ReliefSolver(const TriangleMesh& mesh, const ReliefOptions& options, Context& context,
+               Eigen::VectorXd painted_weight = {});
 
-  /// Options with equal keys share a solver.
-  static std::string key(const ReliefOptions& options);
+  /// Options and weights with equal keys share a solver.
+  static std::string key(const ReliefOptions& options, const Eigen::VectorXd& painted_weight = {});
 
-  /// `base`: in view coordinates, of the same options.
+  /// `base`: in view coordinates, of the same options. `painting`: its regions and depths count; its weights are those
+  /// that the solver was made with.
   /// Throws Error: invalid_input (see depth_bounds; the balanced appearance on a base in steps), could_not_solve,
   /// cancelled.
-  Relief solve(const ReliefOptions& options, const BaseSurface& base, Context& context);
+  Relief solve(const ReliefOptions& options, const BaseSurface& base, Context& context, const Painting& painting = {});
   /// On a base in parts that move in groups: `bounds` as depth_bounds would give them for it. The appearance must be
   /// `detail`. `Relief::pieces` has the parts, `Relief::seen` the surface before it is cut.
   Relief solve(const ReliefOptions& options, const DepthBounds& bounds, const GroupBorders& borders, Context& context);
@@ -69,14 +73,15 @@ class ReliefSolver {
  private:
   Relief solve_within(const ReliefOptions& options, const DepthBounds& bounds, const GroupBorders* borders,
                       Context& context);
-  BoundedQpSolution solve_on_base(BoundedQpConstraints& constraints, const BoundedQpOptions& options, bool even,
-                                  Context& context);
+  BoundedQpSolution solve_on_base(BoundedQpConstraints& constraints, const DepthBounds& bounds,
+                                  const BoundedQpOptions& options, Context& context);
   /// Moves `u` from the optimum of eq. (3.13) to the balanced relief; the number of steps.
   int balance(const ReliefOptions& options, const DepthBounds& bounds, const BoundedQpConstraints& constraints,
               Eigen::VectorXd& u, Context& context);
 
   ViewFrame frame_;
   Triangles F_;
+  Eigen::VectorXd painted_weight_;  // n, or empty
   Visibility visibility_;
   std::vector<InequalityRow> order_rows_;
   std::unique_ptr<class AppearanceEnergy> energy_;

@@ -3,7 +3,7 @@
 // recorded.
 //   node parity.mjs NATIVE_PROGRAM FORMWRIGHT_MJS [NAME] [--record]   all jobs, or NAME.json
 // A recorded job is {"job", "given", "tolerance", "recorded"}: `given` names inputs that are outputs of other jobs ({"job", "given", "output"}, made
-// natively), `tolerance` relative, per figure of the report ("*" for the
+// natively) or JSON files ({"json", "file_name"}), `tolerance` relative, per figure of the report ("*" for the
 // rest; figures that measure time or memory are left out), `recorded` what the report said when it was recorded.
 import { spawn } from 'node:child_process';
 import { createHash } from 'node:crypto';
@@ -176,12 +176,15 @@ function comparePdf(name, a, b) {
 async function withGiven({ job, given = {} }) {
   const files = {};
   const inputs = { ...job.inputs };
-  for (const [name, { job: maker, given: makers, output }] of Object.entries(given)) {
+  const make = async ({ job: maker, given: makers, output }) => {
     const made = await withGiven({ job: maker, given: makers });
-    const bytes = (await runNatively(made.job, made.files)).bytes[output];
+    return (await runNatively(made.job, made.files)).bytes[output];
+  };
+  for (const [name, input] of Object.entries(given)) {
+    const bytes = input.json ? Buffer.from(JSON.stringify(input.json)) : await make(input);
     const sha256 = createHash('sha256').update(bytes).digest('hex');
     files[sha256] = bytes;
-    inputs[name] = { sha256, file_name: output };
+    inputs[name] = { sha256, file_name: input.output ?? input.file_name };
   }
   return { job: { ...job, inputs }, files };
 }

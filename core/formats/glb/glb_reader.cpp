@@ -302,10 +302,13 @@ class GlbReader {
     for (const std::string& name : *columns_) {
       const auto& values = column_values_[k++];
       VertexColumn column{column_name(name), Eigen::Map<const Eigen::VectorXd>(values.data(), n), ColumnKind::float32};
-      if (column.values.allFinite()) file_.columns.push_back(std::move(column));
-      else
-        file_.notes.push_back("The attribute “" + clean_text(name, 40) +
-                              "” holds values that are not numbers and was left out.");
+      if (column.values.allFinite()) {
+        file_.columns.push_back(std::move(column));
+        continue;
+      }
+      file_.columns_not_numbers.push_back(column.name);
+      file_.notes.push_back("The attribute “" + clean_text(name, 40) +
+                            "” holds values that are not numbers and was left out.");
     }
     if (left_out_) file_.notes.push_back("Points and lines were left out.");
     if (document_.count("skins") > 0) file_.notes.push_back("The model has a skeleton; it was read in its rest pose.");

@@ -330,6 +330,7 @@ class PlyReader {
           model_.vertex_colours.unaryExpr([](double c) { return c >= 0 ? linear_of_srgb(c) : 0.0; }).eval();
     std::erase_if(file_.columns, [&](const VertexColumn& column) {
       if (column.values.allFinite()) return false;
+      file_.columns_not_numbers.push_back(column.name);
       file_.notes.push_back("The column “" + column.name + "” holds values that are not numbers and was left out.");
       return true;
     });

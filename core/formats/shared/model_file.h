@@ -35,6 +35,8 @@ struct ModelFile {
   std::string unit;                   // of length, as the file declares it: "m", "mm", "inch"...; "" when it does not.
                                       // Positions are in mm already where it does.
   std::vector<VertexColumn> columns;  // PLY, GLB
+  std::vector<std::string>
+      columns_not_numbers;  // names of those left out, because they hold values that are not numbers
   std::vector<std::string> material_libraries;  // OBJ: names after mtllib
   std::vector<std::string> missing_companions;  // named by the file, not given
   std::vector<std::string> notes;               // what was repaired or left out: one sentence each, for a person

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "job/contract/model_input.h"
 
+#include "formats/shared/mesh_source.h"
 #include "geometry/repair/repair.h"
 #include "geometry/samples/samples.h"
 
@@ -13,7 +14,7 @@ double megabytes(const LoadedModel& loaded) {
       static_cast<double>(model.mesh.V.size() + model.UV.size() + model.vertex_colours.size()) * sizeof(double) +
       static_cast<double>(model.mesh.F.size() + model.FT.size()) * sizeof(int);
   for (const Texture& texture : model.textures) bytes += static_cast<double>(texture.bytes.size());
-  return bytes * 1e-6;
+  return bytes * 1e-6 + loaded.columns.megabytes();
 }
 
 int sample_vertices(const InputBlob& input) {
@@ -45,24 +46,27 @@ std::shared_ptr<const LoadedModel> load_model(const OperationCall& call, const s
   }
   auto loaded = std::make_shared<LoadedModel>();
   loaded->key = input.key();
+  ModelFile file;
   Stopwatch watch;
   call.context.progress(0, "Reading the model");
   if (!input.sample.empty()) {
-    loaded->model = make_sample(input.sample, sample_vertices(input), call.context);
+    file.model = make_sample(input.sample, sample_vertices(input), call.context);
+    loaded->name = input.sample;
     loaded->file_format = "sample";
   } else {
     ReadOptions options;
     options.where = input_name;
-    ModelFile file = read_model_file(*input.bytes, input.file_name, options, call.context);
-    loaded->model = std::move(file.model);
+    file = read_model_file(*input.bytes, input.file_name, options, call.context);
+    loaded->name = input.file_name.empty() ? "The model" : clean_text(input.file_name);
     loaded->file_format = mesh_format_info(file.format).extension;
-    loaded->repairs = std::move(file.notes);
+    loaded->repairs = file.notes;
   }
   loaded->seconds_read = watch.lap();
   call.context.progress(0.6, "Checking the model");
-  const RepairedMesh repaired = repair(loaded->model.mesh, {}, call.context);
+  const RepairedMesh repaired = repair(file.model.mesh, {}, call.context);
   loaded->repairs.insert(loaded->repairs.end(), repaired.sentences.begin(), repaired.sentences.end());
-  loaded->model = repaired_model(loaded->model, repaired);
+  loaded->model = repaired_model(file.model, repaired);
+  loaded->columns = carried_columns(file, repaired);
   loaded->seconds_repair = watch.lap();
   std::shared_ptr<const LoadedModel> kept = loaded;
   call.session.keep(key, kept, megabytes(*loaded));
@@ -82,11 +86,14 @@ std::vector<OutputInfo> mesh_outputs(const std::string& stem, MeshFormat made_by
 }
 
 std::vector<OutputBlob> write_mesh_outputs(const OperationCall& call, const std::vector<OutputInfo>& outputs,
-                                           const Model& model) {
+                                           const Model& model, std::span<const VertexColumn> columns) {
+  WriteOptions write;
+  write.columns = columns;
   std::vector<OutputBlob> written;
   for (const OutputInfo& info : outputs)
     if (call.wants(info.name))
-      written.push_back(make_output(info, write_model(model, *mesh_format_of_extension(info.name), call.context)));
+      written.push_back(
+          make_output(info, write_model(model, *mesh_format_of_extension(info.name), write, call.context)));
   return written;
 }
 

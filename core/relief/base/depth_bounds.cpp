@@ -7,6 +7,7 @@
 #include <string>
 
 #include "base/parallel.h"
+#include "relief/base/painted_bounds.h"
 
 namespace formwright {
 namespace {
@@ -28,7 +29,7 @@ void refuse_misses(const DepthBounds& bounds, int asked, const ReliefOptions& op
 }  // namespace
 
 DepthBounds depth_bounds(const ViewFrame& frame, const Visibility& visibility, const BaseSurface& base,
-                         const ReliefOptions& options, Context& context) {
+                         const ReliefOptions& options, Context& context, const Painting& painting) {
   const auto n = static_cast<std::size_t>(frame.P.rows());
   const double thickness = options.thickness_mm / options.width_mm, carve = options.carve_depth_mm / options.width_mm;
   DepthBounds bounds;
@@ -36,6 +37,7 @@ DepthBounds depth_bounds(const ViewFrame& frame, const Visibility& visibility, c
   bounds.farthest = Eigen::VectorXd::Constant(frame.P.rows(), carve);
   bounds.bounded.assign(n, 1);
   if (options.bounded_vertices == BoundedVertices::visible) bounds.bounded = visibility.vertex;
+  if (painting.bounds_depth()) set_painted_room(painting, options, bounds);
   bounds.group.assign(n, 0);
   bounds.above = thickness;
   bounds.below = carve;
@@ -43,18 +45,28 @@ DepthBounds depth_bounds(const ViewFrame& frame, const Visibility& visibility, c
   if (bands != nullptr) bounds.groups = bands->count();
   const double outline = options.outline_mm.value_or(INFINITY) / options.width_mm;
   const bool tied = outline < std::max(thickness, carve);
-  bounds.even = base.is_flat() && !tied;
-  // Depths before and behind the base, of one vertex.
-  const auto before = [&](std::size_t i) {
-    return tied && visibility.outline[i] ? std::min(thickness, outline) : thickness;
+  const bool painted = bounds.above_of.size() > 0;
+  bounds.even = base.is_flat() && !tied && !painted;
+  // What is painted goes before the outline.
+  const auto is_tied = [&](std::size_t i) {
+    return tied && visibility.outline[i] &&
+           painting.region_of(static_cast<Eigen::Index>(i)) == PaintedRegion::usual;
   };
-  const auto behind = [&](std::size_t i) { return tied && visibility.outline[i] ? std::min(carve, outline) : carve; };
-  if (tied)
-    for (std::size_t i = 0; i < n; ++i) bounds.bounded[i] |= visibility.outline[i];
-  if (base.is_flat() && !bounds.even)
+  // Depths before and behind the base, of one vertex.
+  const auto above = [&](std::size_t i) {
+    const double own = painted ? bounds.above_of[static_cast<Eigen::Index>(i)] : thickness;
+    return is_tied(i) ? std::min(own, outline) : own;
+  };
+  const auto below = [&](std::size_t i) {
+    const double own = painted ? bounds.below_of[static_cast<Eigen::Index>(i)] : carve;
+    return is_tied(i) ? std::min(own, outline) : own;
+  };
+  for (std::size_t i = 0; tied && i < n; ++i)
+    if (is_tied(i)) bounds.bounded[i] = 1;
+  if (base.is_flat() && tied)
     for (std::size_t i = 0; i < n; ++i) {
-      bounds.nearest[static_cast<Eigen::Index>(i)] = -before(i);
-      bounds.farthest[static_cast<Eigen::Index>(i)] = behind(i);
+      bounds.nearest[static_cast<Eigen::Index>(i)] = -above(i);
+      bounds.farthest[static_cast<Eigen::Index>(i)] = below(i);
     }
   if (!base.is_flat()) {
     std::atomic<int> missed = 0;
@@ -62,15 +74,15 @@ DepthBounds depth_bounds(const ViewFrame& frame, const Visibility& visibility, c
       context.check_cancelled();
       for (std::size_t i = begin; i < end; ++i) {
         const auto vertex = static_cast<Eigen::Index>(i);
-        const auto nearest = base.depth_on_ray(frame, vertex, -before(i)),
-                   farthest = base.depth_on_ray(frame, vertex, behind(i));
+        const auto nearest = base.depth_on_ray(frame, vertex, -above(i)),
+                   farthest = base.depth_on_ray(frame, vertex, below(i));
         if (bands != nullptr) bounds.group[i] = bands->of_ray(frame, frame.P.row(vertex).transpose());
         if (nearest && farthest) {
           bounds.nearest[vertex] = *nearest;
           bounds.farthest[vertex] = std::max(*nearest, *farthest);
         } else if (bounds.bounded[i]) {
           bounds.bounded[i] = 0;
-          ++missed;
+          if (painting.region_of(vertex) != PaintedRegion::free) ++missed;
         }
       }
     });
@@ -82,6 +94,7 @@ DepthBounds depth_bounds(const ViewFrame& frame, const Visibility& visibility, c
     throw Error(
         ErrorCode::invalid_input, base.is_flat() ? "thickness_mm" : "base",
         "The relief would extend more than half-way to the viewpoint: choose a smaller thickness or a larger viewing distance.");
+  if (bounds.above_of.size() > 0) open_free_regions(frame, painting, bounds);
   return bounds;
 }
 

@@ -15,7 +15,8 @@ struct Corner {
   int origin = -1;
   double t = 0;  // on the plate, against the borders
   Vec3 place = Vec3::Zero();
-  Vec2 limits = Vec2::Zero();  // nearest and farthest depth, of the vertices around
+  Vec2 limits = Vec2::Zero();  // nearest and farthest depth, of a vertex
+  Vec2 room = Vec2::Zero();    // how far they are before and behind the base, where that is painted
   bool bounded = true;
   std::array<int, 3> key() const { return {a, b, border}; }
 };
@@ -49,6 +50,14 @@ class Cutter {
     for (std::size_t f = 0; f < faces_.size(); ++f) result.F.row(static_cast<Eigen::Index>(f)) = faces_[f].transpose();
     result.band = std::move(band_);
     result.origin = std::move(origin_);
+    if (bounds_.painted()) {
+      result.above.resize(result.V.rows());
+      result.below.resize(result.V.rows());
+      for (std::size_t i = 0; i < room_.size(); ++i) {
+        result.above[static_cast<Eigen::Index>(i)] = room_[i][0];
+        result.below[static_cast<Eigen::Index>(i)] = room_[i][1];
+      }
+    }
     return result;
   }
 
@@ -59,7 +68,8 @@ class Cutter {
     c.place = joint_.row(vertex).transpose();
     // Of the model, where the ray is the same: which side it is on does not hang on the solution's last digit.
     c.t = borders_.place(frame_.P.row(vertex).transpose());
-    c.limits = {bounds_.nearest[vertex], bounds_.farthest[vertex]};
+    c.limits = {bounds_.nearest_allowed(vertex), bounds_.farthest[vertex]};
+    if (bounds_.painted()) c.room = {bounds_.above_of[vertex], bounds_.below_of[vertex]};
     c.bounded = bounds_.bounded[static_cast<std::size_t>(vertex)] != 0;
     return c;
   }
@@ -83,6 +93,7 @@ class Cutter {
       on.t = at;
       on.origin = share < 0.5 ? first.origin : second.origin;
       on.bounded = first.bounded && second.bounded;
+      on.room = first.room + share * (second.room - first.room);
       before.push_back(on);
       behind.push_back(on);
     }
@@ -109,6 +120,7 @@ class Cutter {
     if (is_new) {
       places_.push_back(brought_back(c, band));
       origin_.push_back(c.origin);
+      room_.push_back(c.room);
     }
     return found->second;
   }
@@ -123,8 +135,11 @@ class Cutter {
       p = viewpoint + (p - viewpoint) / (1 + kappa * m);
     }
     std::optional<Vec2> limits;
-    if (c.border >= 0) limits = borders_.limits(band, c.border, p, c.bounded);
-    else if (c.bounded) limits = c.limits;
+    if (c.border >= 0) {
+      limits = borders_.limits(band, c.border, p, c.bounded);
+      // Counted from the base, on which the borders' limits are `above` and `below`.
+      if (limits && bounds_.painted()) *limits += Vec2(bounds_.above - c.room[0], c.room[1] - bounds_.below);
+    } else if (c.bounded) limits = c.limits;
     if (!limits) return p;
     const double z = std::clamp(p.z(), (*limits)[0], (*limits)[1]);
     const double stretch = (1 + kappa * z) / (1 + kappa * p.z());
@@ -142,6 +157,7 @@ class Cutter {
   std::vector<Vec3> places_;
   std::vector<Eigen::Vector3i> faces_;
   std::vector<int> band_, origin_;
+  std::vector<Vec2> room_;
 };
 
 }  // namespace

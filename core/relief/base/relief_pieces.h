@@ -10,10 +10,11 @@
 namespace formwright {
 
 struct ReliefPieces {
-  Positions V;              // view coordinates, each vertex on its ray
-  Triangles F;              // turned as the relief's
-  std::vector<int> band;    // of each triangle; no vertex belongs to triangles of two bands
-  std::vector<int> origin;  // of each vertex, that of the relief which it is or lies nearest to
+  Positions V;                   // view coordinates, each vertex on its ray
+  Triangles F;                   // turned as the relief's
+  std::vector<int> band;         // of each triangle; no vertex belongs to triangles of two bands
+  std::vector<int> origin;       // of each vertex, that of the relief which it is or lies nearest to
+  Eigen::VectorXd above, below;  // of each vertex, DepthBounds::above_of and below_of where they are there
 };
 
 /// Cuts the joint surface exactly along the borders' planes, and brings each part back to its band by its own scale.

@@ -275,6 +275,8 @@ export interface ViewportApi {
   /** As `updateOriginal`, for positions that only grew or moved: what else is known of the mesh holds. */
   rescaleOriginal(positions: Float32Array | Float64Array): void;
   updateRelief(positions: Float32Array | Float64Array, plate?: Plate | null): void;
+  /** New colours for a mesh that was given with colours, without touching the shape. */
+  updateColours(part: 'original' | 'relief', colours: Float32Array): void;
   /** New values for an attribute without touching the shape. */
   updateAttribute(part: 'original' | 'relief', name: string, values: Float32Array): void;
 

@@ -80,6 +80,13 @@ export class Content {
     this.refresh();
   }
 
+  updateColours(part: PartName, colours: Float32Array): void {
+    const mesh = this.meshes[part];
+    if (!mesh?.colours) throw new RangeError(`The ${part} was given without colours.`);
+    this.meshes[part] = { ...mesh, colours };
+    this.stage.meshOf(part)?.updateColours(colours);
+  }
+
   setFixtures(fixtures: readonly Fixture[]): void {
     this.stage.setFixtures(fixtures);
     this.upload('original');

@@ -49,6 +49,11 @@ export class Viewport extends ViewportBase implements ViewportApi {
     this.shapeChanged(false);
   }
 
+  updateColours(part: PartName, colours: Float32Array): void {
+    this.content?.updateColours(part, colours);
+    this.invalidate();
+  }
+
   updateAttribute(part: PartName, name: string, values: Float32Array): void {
     this.stage?.colouring.setAttribute(part, name, values);
     this.invalidate();

@@ -8,6 +8,7 @@
 #include "geometry/mesh/subdivide.h"
 #include "job/contract/model_input.h"
 #include "job/contract/operation_options.h"
+#include "job/operations/relief/painting/painting_file.h"
 
 namespace formwright {
 namespace {
@@ -25,10 +26,21 @@ struct SubdivideJobOptions {
       parameter("scheme", &SubdivideJobOptions::scheme, "Scheme", "Midpoint keeps the shape exactly; Loop rounds it.")};
 };
 
-/// An operation on the model input whose body fills report and outputs.
+/// What is painted on the model, as numbers of its vertices.
+std::vector<VertexColumn> painted_on(const LoadedModel& loaded) {
+  std::vector<VertexColumn> columns;
+  for (const std::string_view name : painted_columns)
+    if (const ModelColumn* const found = loaded.columns.find(name)) columns.push_back(found->column);
+  return columns;
+}
+
+enum class ResultVertices { own, of_the_model };
+
+/// An operation on the model input whose body fills report and outputs. Where the result has the model's vertices, what
+/// is painted on them goes along.
 template <class Options, class Body>
 Operation mesh_operation(std::string name, std::string title, std::string summary, std::vector<OutputInfo> outputs,
-                         std::vector<ReportField> report, Body body) {
+                         std::vector<ReportField> report, Body body, ResultVertices vertices = ResultVertices::own) {
   Operation operation;
   operation.name = std::move(name);
   operation.title = std::move(title);
@@ -36,7 +48,7 @@ Operation mesh_operation(std::string name, std::string title, std::string summar
   operation.inputs = {model_input_info()};
   operation.outputs = outputs;
   operation.report = std::move(report);
-  take_options<Options>(operation, [outputs, body](const OperationCall& call, const Options& options) {
+  take_options<Options>(operation, [outputs, body, vertices](const OperationCall& call, const Options& options) {
     std::shared_ptr<const LoadedModel> loaded;
     {
       const auto span = call.context.span(0, 0.4, "Reading the model");
@@ -47,7 +59,9 @@ Operation mesh_operation(std::string name, std::string title, std::string summar
     const Model model = body(*loaded, options, result.report, call.context);
     result.report["seconds_work"] = watch.lap();
     call.context.progress(0.9, "Writing");
-    result.outputs = write_mesh_outputs(call, outputs, model);
+    const std::vector<VertexColumn> painted =
+        vertices == ResultVertices::of_the_model ? painted_on(*loaded) : std::vector<VertexColumn>();
+    result.outputs = write_mesh_outputs(call, outputs, model, painted);
     result.report["seconds_write"] = watch.lap();
     return result;
   });
@@ -95,7 +109,7 @@ Operation import_operation() {
                    {"file_format", "Format", "", "File format as recognised from the content."},
                    {"seconds_read", "Reading", "s", "Time for reading the file; 0 if it was read before."},
                    {"seconds_repair", "Repairing", "s", "Time for repairing the model; 0 if it was repaired before."}}),
-      describe_import);
+      describe_import, ResultVertices::of_the_model);
 }
 
 Operation simplify_operation() {
@@ -128,13 +142,15 @@ Operation subdivide_operation() {
 }
 
 Operation convert_operation() {
-  return mesh_operation<NoOptions>("convert", "Convert", "Repairs a model and writes it in another format.",
-                                   mesh_outputs("model", MeshFormat::obj), with_counts({}),
-                                   [](const LoadedModel& loaded, const NoOptions&, Json& report, Context&) {
-                                     report["vertices"] = loaded.model.mesh.vertex_count();
-                                     report["faces"] = loaded.model.mesh.face_count();
-                                     return loaded.model;
-                                   });
+  return mesh_operation<NoOptions>(
+      "convert", "Convert", "Repairs a model and writes it in another format.", mesh_outputs("model", MeshFormat::obj),
+      with_counts({}),
+      [](const LoadedModel& loaded, const NoOptions&, Json& report, Context&) {
+        report["vertices"] = loaded.model.mesh.vertex_count();
+        report["faces"] = loaded.model.mesh.face_count();
+        return loaded.model;
+      },
+      ResultVertices::of_the_model);
 }
 
 }  // namespace formwright

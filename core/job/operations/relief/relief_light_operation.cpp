@@ -4,6 +4,7 @@
 #include "job/contract/operation_options.h"
 #include "job/operations/relief/relief_base.h"
 #include "job/operations/relief/relief_light_files.h"
+#include "job/operations/relief/painting/loaded_painting.h"
 
 namespace formwright {
 namespace {
@@ -162,7 +163,7 @@ Operation relief_light_operation() {
   operation.title = "Relief in real light";
   operation.summary =
       "Shows how a relief will look in the sun, under a sky, beside a window or under a strobe, with the shadows that it casts, and when it looks best.";
-  operation.inputs = {model_input_info(), base_input_info()};
+  operation.inputs = {model_input_info(), base_input_info(), painting_input_info(), painted_mesh_input_info()};
   operation.outputs = light_outputs();
   operation.report = light_report_fields();
   take_options<ReliefLightOptions>(operation, run_relief_light, check_light);

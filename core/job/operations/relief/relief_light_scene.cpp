@@ -18,9 +18,10 @@ constexpr double model_clearance = 1e-4;  // of the width
 
 std::string scene_key(const OperationCall& call, const LoadedModel& loaded, const ReliefLightOptions& options) {
   Json shape = write_parameters(static_cast<const ReliefOptions&>(options));
-  const auto base = call.inputs.find("base_mesh");
-  return "relief-light:" + loaded.key + ":" + (base == call.inputs.end() ? "" : base->second.key()) + ":" +
-         shape.dump() + ":" + (options.light_pixel_mm ? Json(*options.light_pixel_mm).dump() : "");
+  std::string inputs;
+  for (const auto& [name, input] : call.inputs) inputs += name + "=" + input.key() + ":";
+  return "relief-light:" + loaded.key + ":" + inputs + shape.dump() + ":" +
+         (options.light_pixel_mm ? Json(*options.light_pixel_mm).dump() : "");
 }
 
 /// Right, up and towards the viewer, mm, the middle of the plate's front at 0.

@@ -9,6 +9,8 @@
 #include "formats/png/png16.h"
 #include "job/contract/model_input.h"
 #include "job/contract/operation_options.h"
+#include "job/operations/relief/painting/painted_report.h"
+#include "job/operations/relief/painting/painting_file.h"
 #include "job/operations/relief/relief_base.h"
 #include "job/operations/relief/solved_relief.h"
 #include "relief/height_map.h"
@@ -70,6 +72,10 @@ std::vector<ReportField> relief_report_fields() {
        "Number of conditions that contradict the limits of depth, where the base bends by more than the relief is thick."},
       {"vertices_beyond_base", "Vertices beyond the base", "",
        "Number of vertices that have no base behind them and are free in depth."},
+      {"painted_vertices", "Painted vertices", "",
+       "Number of vertices of each kind that is painted: matters_more, matters_less, free, on_base, own_thickness. Null without a painting."},
+      {"stands_out_max_mm", "Largest height above the base", "mm",
+       "How far the relief stands out from its base at most; more than the thickness where it is painted so."},
       {"kkt_residual", "KKT residual", "",
        "Relative error of the optimality conditions (Karush-Kuhn-Tucker) at the solution; practically 0."},
       {"relative_gap", "Distance from the best", "",
@@ -150,15 +156,21 @@ Model display_model(const ReliefSolver& solver, const Relief& relief, const Tria
   return model;
 }
 
-std::vector<VertexColumn> ply_columns(const ReliefSolver& solver, const Relief& relief) {
+std::vector<VertexColumn> ply_columns(const SolvedRelief& solved, const ReliefOptions& options) {
+  const ReliefSolver& solver = *solved.solver;
+  const Relief& relief = solved.relief;
   const Eigen::Index n = relief.u.size();
   Eigen::VectorXd visible(n);
   for (Eigen::Index i = 0; i < n; ++i) visible[i] = solver.visibility().vertex[static_cast<std::size_t>(i)];
-  return {{"lambda", relief.lambda_mm, ColumnKind::float64},
-          {"lambda_min", relief.lambda_min_mm, ColumnKind::float64},
-          {"lambda_max", relief.lambda_max_mm.cwiseMin(unbounded_mm), ColumnKind::float64},
-          {"visible", visible, ColumnKind::uint8},
-          {"normal_error_deg", relief.normal_error.vertex_deg, ColumnKind::float64}};
+  std::vector<VertexColumn> columns{{"lambda", relief.lambda_mm, ColumnKind::float64},
+                                    {"lambda_min", relief.lambda_min_mm, ColumnKind::float64},
+                                    {"lambda_max", relief.lambda_max_mm.cwiseMin(unbounded_mm), ColumnKind::float64},
+                                    {"visible", visible, ColumnKind::uint8},
+                                    {"normal_error_deg", relief.normal_error.vertex_deg, ColumnKind::float64}};
+  for (VertexColumn& painted :
+       columns_of_painting(solved.painted.painting, options.thickness_mm, options.carve_depth_mm))
+    columns.push_back(std::move(painted));
+  return columns;
 }
 
 void report_relief(Json& report, const LoadedModel& loaded, const ReliefSolver& solver, const Relief& relief,
@@ -255,6 +267,8 @@ OperationResult run_relief(const OperationCall& call, const ReliefOptions& optio
       solved.base.depth_range(0.5 * plate.width_mm / options.width_mm, 0.5 * plate.height_mm / options.width_mm)
           .value_or(std::pair{0.0, 0.0});
   const double range_mm = options.width_mm * (base_depth.second - base_depth.first) + space.above_mm + space.below_mm;
+  report["painted_vertices"] = painted_vertices(solved.painted.painting);
+  report["stands_out_max_mm"] = space.above_mm;
   report["size_mm"] = {plate.width_mm, plate.height_mm, options.plate_mm + range_mm};
   const auto add = [&](const char* name, Bytes bytes) {
     for (const OutputInfo& info : relief_outputs())
@@ -265,7 +279,7 @@ OperationResult run_relief(const OperationCall& call, const ReliefOptions& optio
     const CoveringMesh front = covering(*solver, relief);
     Model model;
     model.mesh = {frame.to_model(front.V, options.width_mm), front.F};
-    std::vector<VertexColumn> columns = ply_columns(*solver, relief);
+    std::vector<VertexColumn> columns = ply_columns(solved, options);
     if (front.band != nullptr)
       for (VertexColumn& column : columns) column.values = column.values(relief.pieces.origin).eval();
     WriteOptions write;
@@ -320,7 +334,9 @@ OperationResult run_relief(const OperationCall& call, const ReliefOptions& optio
   report["seconds_factorise"] = solved.reused ? 0.0 : solver->seconds_factorise();
   report["seconds_write"] = watch.seconds();
   report["repairs"] = loaded->repairs;
-  report["notes"] = notes_of(relief);
+  std::vector<std::string> notes = notes_of(relief);
+  notes.insert(notes.end(), solved.painted.notes.begin(), solved.painted.notes.end());
+  report["notes"] = notes;
   return result;
 }
 
@@ -331,7 +347,7 @@ Operation relief_operation() {
   operation.name = "relief";
   operation.title = "Relief";
   operation.summary = "Turns a model into a thin relief that still looks deep from the viewpoint you choose.";
-  operation.inputs = {model_input_info(), base_input_info()};
+  operation.inputs = {model_input_info(), base_input_info(), painting_input_info(), painted_mesh_input_info()};
   operation.outputs = relief_outputs();
   operation.report = relief_report_fields();
   take_options<ReliefOptions>(operation, run_relief);

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "job/contract/model_input.h"
+#include "job/operations/relief/painting/loaded_painting.h"
 #include "relief/height_map.h"
 #include "relief/relief.h"
 
@@ -17,6 +18,7 @@ struct SolvedRelief {
   std::shared_ptr<ReliefSolver> solver;
   bool reused = false;  // the solver was found in the session
   BaseSurface base;
+  LoadedPainting painted;
   Relief relief;
   double seconds_solve = 0;
 };

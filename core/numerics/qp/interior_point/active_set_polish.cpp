@@ -272,6 +272,16 @@ ExchangeResult Polish::interior_result() const {
   }
   for (Eigen::Index r = 0; r < point_.order_force.size(); ++r)
     add({Side::order, static_cast<int>(r)}, point_.order_force[r]);
+  // An unknown held by an equality is balanced by its reaction, whatever it is.
+  const BoundedQpConstraints& c = rows_.constraints();
+  const Eigen::VectorXd open = energy_.apply(point_.u) - result.force;
+  for (int i = 0; i < n_; ++i)
+    if (c.lower[i] == c.upper[i] && c.lower_slope[i] == c.upper_slope[i]) {
+      rows_.add_force({Side::both, i}, open[i], result.force);
+      result.active.push_back({Side::both, i});
+      multiplier.push_back(open[i]);
+      result.pushing.push_back({Side::both, i});
+    }
   result.multiplier =
       Eigen::Map<const Eigen::VectorXd>(multiplier.data(), static_cast<Eigen::Index>(multiplier.size()));
   return result;

@@ -30,6 +30,7 @@ import type { SendToMill } from './send_relief';
 import { sendRelief } from './send_relief';
 import { solidLine } from './report';
 import { LightPanel } from './light/light_panel';
+import { PaintButton } from './paint/paint_button';
 import { atViewpoint, followCamera, mode } from './viewport_panel';
 
 export interface InspectorProps {
@@ -58,6 +59,7 @@ export function Inspector(props: InspectorProps) {
       <div class="inspector-scroll" tabIndex={-1}>
         <ModelRow session={session} picture={picture} onReplace={onReplace} />
         <GroupList session={session} />
+        <PaintButton session={session} />
         {mode.value === 'light' ? <LightPanel session={session} /> : null}
         <ParameterPanel
           operation={shown}

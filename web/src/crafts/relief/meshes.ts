@@ -55,14 +55,16 @@ export function plateOf(report: Report, thickness_mm: number, base: MeshData | n
   const size = vectorOf(report, 'size_mm');
   const centre = vectorOf(report, 'plate_centre_mm');
   if (size === null || centre === null) return null;
+  // Painted places may stand out farther than the rest.
+  const standsOut_mm = figure(report, 'stands_out_max_mm') ?? thickness_mm;
   return {
     widthMm: size[0],
     heightMm: size[1],
-    thicknessMm: Math.max(0, size[2] - thickness_mm),
+    thicknessMm: Math.max(0, size[2] - standsOut_mm),
     centreMm: centre,
     direction: axis(report, 'direction', [0, 0, -1]),
     up: axis(report, 'up', [0, 1, 0]),
-    reliefThicknessMm: thickness_mm,
+    reliefThicknessMm: standsOut_mm,
     ...(base ? { mesh: base } : {}),
   };
 }

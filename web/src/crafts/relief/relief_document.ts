@@ -1,17 +1,33 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The relief's part of a project.
 import type { JobInput, JsonObject } from '../../jobs/contract';
+import type { BlobReference } from '../../project/document';
 import type { Companion, CraftDocument, CraftResult, Subject } from '../../shared/session/craft_document';
 import { CraftCommands, emptyCraft, sameRequest } from '../../shared/session/craft_document';
+
+/** What is painted on a model. */
+export interface Painting {
+  /** The mesh whose vertices are painted. */
+  readonly on: string;
+  /** As the operation reads it; null while nothing is painted. */
+  readonly file: BlobReference | null;
+}
 
 export interface ReliefDocument extends CraftDocument {
   /** The file of the surface that the relief is worked into; null for a built-in shape. */
   readonly base: Companion | null;
   /** What differs from the defaults of the light that it is shown in. */
   readonly light: JsonObject;
+  /** What was painted last, and on which model. */
+  readonly painting: Painting | null;
 }
 
-export const relief = new CraftCommands<ReliefDocument>('relief', { ...emptyCraft, base: null, light: {} });
+export const relief = new CraftCommands<ReliefDocument>('relief', {
+  ...emptyCraft,
+  base: null,
+  light: {},
+  painting: null,
+});
 
 /** The operation's input for it. */
 export const baseInputs = ({ base }: ReliefDocument): Readonly<Record<string, JobInput>> =>

@@ -20,6 +20,8 @@ import { ForestSession } from './forest/forest_session';
 import { ModelGroup } from './group/model_group';
 import { ReliefLight } from './light/relief_light';
 import { baseOf, parametersOf } from './meshes';
+import { PaintSession } from './paint/paint_session';
+import { paintingInputs } from './paint/painting';
 import type { ReliefDocument } from './relief_document';
 import { baseInputs, currentResult, relief, takeBase } from './relief_document';
 import { solverSeconds } from './report';
@@ -43,7 +45,10 @@ export class ReliefSession extends RoomSession<ReliefDocument> {
     inputName: 'mesh',
     ownParameters: (source) => this.#viewpointOf(source),
     // A new model starts with its own viewpoint; sizes stay as the maker set them.
-    furtherInputs: computed(() => baseInputs(this.document.value)),
+    furtherInputs: computed(() => ({
+      ...baseInputs(this.document.value),
+      ...paintingInputs(this.document.value),
+    })),
     forgets: (name) => this.operation.value?.parameters.properties[name]?.['x-group'] === 'Viewpoint',
   });
   /** Several models in one relief. */
@@ -61,6 +66,7 @@ export class ReliefSession extends RoomSession<ReliefDocument> {
   });
   readonly shown = this.previews.shown;
   readonly light = new ReliefLight(this);
+  readonly paint = new PaintSession(this);
   readonly #previewed = signal<Measured | null>(null);
   readonly #previewMemory_mb = signal(0);
 
@@ -73,6 +79,7 @@ export class ReliefSession extends RoomSession<ReliefDocument> {
     });
     this.previews.startFollowing();
     this.light.startFollowing();
+    this.paint.startFollowing();
   }
 
   openFiles(files: readonly File[]): Promise<boolean> {
@@ -119,10 +126,19 @@ export class ReliefSession extends RoomSession<ReliefDocument> {
     return from !== undefined && (from === subject.value?.key || from === previewSubject.value?.key);
   });
 
+  /** What is shown was made of the model that is open, with its painting and base or others. */
+  readonly showsModel = computed(() => {
+    const { subject, previewSubject } = this.model;
+    const from = this.shown.value?.from;
+    return from !== undefined && [subject, previewSubject].some(({ value }) => sameMesh(from, value?.key));
+  });
+
   /** Millimetres a unit of the model, as it is drawn beside its relief. */
   readonly drawnScale = computed(() => {
     const positions = this.model.original.value?.mesh.positions;
-    const reported = this.fits.value ? figure(this.shown.value?.report ?? {}, 'scale_mm_per_unit') : null;
+    const reported = this.showsModel.value
+      ? figure(this.shown.value?.report ?? {}, 'scale_mm_per_unit')
+      : null;
     return reported ?? (positions ? provisionalScale(positions, Number(this.value('width_mm') ?? 100)) : 1);
   });
 
@@ -194,6 +210,9 @@ export class ReliefSession extends RoomSession<ReliefDocument> {
     };
   });
 }
+
+/** Keys of subjects begin with their mesh. */
+const sameMesh = (a: string, b: string | undefined): boolean => a.split('+')[0] === b?.split('+')[0];
 
 /** Until the first relief says the scale: the model's x extent as the width. */
 function provisionalScale(positions: Float32Array, width_mm: number): number {

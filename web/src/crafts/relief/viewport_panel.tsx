@@ -14,6 +14,8 @@ import { ForestButton } from './forest/forest_button';
 import { GroupHandles } from './group/group_handles';
 import { GroupMover } from './group/group_mover';
 import type { GripElements } from './group/hold';
+import { brushPointer, keepPainted } from './paint/paint_scene';
+import { PaintTool } from './paint/paint_tool';
 import { brightnessMapping } from './light/light_values';
 import { errorMapping, errorOf, litData, plateOf, reliefData, viewpointOf } from './meshes';
 import type { ReliefSession } from './relief_session';
@@ -58,16 +60,17 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
   const ball = useRef<HTMLDivElement>(null);
   const side = useRef<HTMLDivElement>(null);
   const foot = useRef<HTMLDivElement>(null);
-  const made = useRef<Viewport | null>(null);
   const mover = useMemo(() => new GroupMover(session), [session]);
   const grips = useMemo((): GripElements => ({}), []);
   /** The view says itself why it cannot draw; what belongs to a picture goes away. */
   const drawing = useSignal(true);
   const isNarrow = useSignal(narrow());
+  const made = useSignal<Viewport | null>(null);
 
   useEffect(() => {
     if (container.current === null) return undefined;
-    const viewport = new Viewport(container.current, {
+    const brush = brushPointer(session, (x, y) => viewport.pick(x, y));
+    const viewport: Viewport = new Viewport(container.current, {
       mode: drawnMode(mode.value),
       light: light.value,
       freeRectangle: freeRectangle(null),
@@ -77,13 +80,13 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
         if (followCamera.value && !at) session.setViewpoint(camera, 'viewpoint');
       },
       onStatus: ({ state }) => (drawing.value = state === 'ready'),
-      onPointer: ({ kind, hit }) => {
-        if (kind === 'click' && hit?.part === 'original' && mode.value === 'original')
-          mover.choose(hit.triangle);
+      onPointer: (event) => {
+        if (session.paint.open.value) brush(event);
+        else if (event.kind === 'click' && event.hit?.part === 'original' && mode.value === 'original')
+          mover.choose(event.hit.triangle);
       },
-      onFrame: () => mover.placeHandles(viewport, grips, mode.peek() === 'original'),
+      onFrame: () => mover.placeHandles(viewport, grips, areModelsShown(session)),
     });
-    made.current = viewport;
     const lightBall = new LightBall(light.value, (chosen) => {
       light.value = chosen;
       viewport.setLight(chosen);
@@ -96,15 +99,17 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
       effect(() => followOnly(session)),
       effect(() => {
         void [mover.model.value, session.drawnScale.value];
-        const there = mode.value === 'original';
+        const there = areModelsShown(session);
         requestAnimationFrame(() => mover.placeHandles(viewport, grips, there));
       }),
       effect(() => {
-        session.light.open.value = mode.value === 'light';
+        const painting = session.paint.open.value;
+        session.light.open.value = mode.value === 'light' && !painting;
         viewport.setColourMapping(mode.value === 'light' ? brightnessMapping : errorMapping);
-        viewport.setMode(drawnMode(mode.value));
+        viewport.setMode(painting ? 'original' : drawnMode(mode.value));
       }),
       keepDrawn(viewport, session, (thickness) => inset.update(thickness)),
+      keepPainted(viewport, session),
       effect(() =>
         viewport.setResting(session.previews.running.value || session.activity.value.kind !== 'idle'),
       ),
@@ -116,10 +121,11 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
     resize.observe(container.current);
     if (foot.current) resize.observe(foot.current);
     onViewport(viewport);
+    made.value = viewport;
     return () => {
-      session.light.open.value = false;
+      made.value = null;
+      session.light.open.value = session.paint.open.value = false;
       onViewport(null);
-      made.current = null;
       resize.disconnect();
       for (const end of stop) end();
       inset.dispose();
@@ -138,7 +144,9 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
   return (
     <div class="viewport-panel">
       <div ref={container} class="viewport" />
-      {session.model.original.value && drawing.value ? (
+      {session.paint.open.value && drawing.value ? (
+        <PaintTool session={session} viewport={made.value} />
+      ) : session.model.original.value && drawing.value ? (
         <div class="float top-left relief-views">
           <Segmented
             floating
@@ -150,11 +158,11 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
           <ForestButton session={session} />
         </div>
       ) : null}
-      {session.group.models.value && mode.value === 'original' && drawing.value ? (
-        <GroupHandles mover={mover} viewport={() => made.current} elements={grips} />
+      {areModelsShown(session) && drawing.value ? (
+        <GroupHandles mover={mover} viewport={() => made.value} elements={grips} />
       ) : null}
       <div ref={foot} class="float bottom-left foot">
-        {mode.value === 'error' && shown ? (
+        {mode.value === 'error' && shown && !session.paint.open.value ? (
           <Legend
             mapping={errorMapping}
             values={errorOf(shown.mesh)}
@@ -178,6 +186,10 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
     </div>
   );
 }
+
+/** The models of a group, to be moved. */
+const areModelsShown = ({ group, paint }: ReliefSession): boolean =>
+  group.models.value !== null && mode.value === 'original' && !paint.open.value;
 
 /** Light is drawn as values on the relief. */
 const drawnMode = (chosen: ReliefMode): ViewMode => (chosen === 'light' ? 'error' : chosen);
@@ -209,7 +221,7 @@ function keepDrawn(
       drawnOriginal = drawnRelief = drawnModel = null;
       return;
     }
-    const fits = session.fits.value;
+    const fits = session.showsModel.value;
     const scale = session.drawnScale.value;
     if (drawnOriginal?.from !== original.from) viewport.setOriginal(originalData(original.mesh, scale));
     else if (drawnOriginal.scale !== scale) viewport.rescaleOriginal(scaled(original.mesh.positions, scale));

@@ -138,7 +138,7 @@ export class Surface {
     this.geometry.setIndex(new THREE.BufferAttribute(indices, 1));
     const defines: Record<string, string | number> = { SHADOW_TAPS: options.shadowTaps ?? 16 };
     if (mesh.colours) {
-      this.geometry.setAttribute('colour', attribute(this.spread(mesh.colours, 3), 3));
+      this.geometry.setAttribute('colour', attribute(this.spread(mesh.colours, 3), 3, true));
       defines['COLOURS'] = 1;
     }
     const uvs = this.pictured?.uvs ?? (mesh.uvs ? this.spread(mesh.uvs, 2) : null);
@@ -265,6 +265,13 @@ export class Surface {
       this.knownOutline = undefined;
     }
     ++this.version;
+  }
+
+  /** Of a mesh that came with colours. */
+  updateColours(colours: Float32Array): void {
+    const attribute = this.geometry.getAttribute('colour') as THREE.BufferAttribute;
+    attribute.array.set(this.spread(colours, 3));
+    attribute.needsUpdate = true;
   }
 
   /** Colours by values per mesh vertex; null goes back to plaster. Only values: keep `map` and set the range. `unlit`: as they are,

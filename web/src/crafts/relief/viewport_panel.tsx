@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The viewport with what floats over it: view modes, light, side view, legend, notes.
-import { effect, signal, useSignal } from '@preact/signals';
+import { effect, signal, untracked, useSignal } from '@preact/signals';
 import type { ComponentChildren } from 'preact';
 import { useEffect, useRef } from 'preact/hooks';
 import { Icon, Segmented } from '../../ui';
@@ -94,7 +94,10 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
       }),
       keepDrawn(viewport, session, (thickness) => inset.update(thickness)),
       keepPainted(viewport, session),
-      effect(() => viewport.setFreeRectangle(freeRectangle(foot.current, session.paint.open.value))),
+      effect(() => {
+        const painting = session.paint.open.value;
+        untracked(() => viewport.setFreeRectangle(freeRectangle(foot.current, painting)));
+      }),
       effect(() =>
         viewport.setResting(session.previews.running.value || session.activity.value.kind !== 'idle'),
       ),

@@ -47,19 +47,19 @@ test('what is painted stands out, is undone, and survives a reload', async ({ pa
   await page.keyboard.press('Control+Shift+z');
   await expect(painted(page)).toHaveText('Painted: Free.');
 
-  // Without pointing.
-  await paint(page, 'On the base').check();
+  // Without pointing. A thickness of 10 mm everywhere is a relief of 10 mm.
+  await paint(page, 'Own thickness').check();
   await tool(page).getByRole('button', { name: 'Fill' }).click();
-  await page.getByRole('menuitem', { name: 'The outline' }).click();
-  await expect(painted(page)).toHaveText('Painted: Free, On the base.');
+  await page.getByRole('menuitem', { name: 'The whole model' }).click();
+  await expect(painted(page)).toHaveText('Painted: Own thickness.');
   await tool(page).getByRole('button', { name: 'Done' }).click();
   await expect(tool(page)).toBeHidden();
   await expect(strip(page, 'Preview up to date')).toBeVisible();
 
   await page.reload();
-  await expect(painted(page)).toHaveText('Painted: Free, On the base.');
+  await expect(painted(page)).toHaveText('Painted: Own thickness.');
   await solve(page);
-  expect(await depthOfSolid(page)).toBeGreaterThan(8.5);
+  expect(await depthOfSolid(page)).toBeCloseTo(13, 5);
 });
 
 test.describe('with a finger on a narrow screen', () => {

@@ -73,9 +73,9 @@ std::vector<ReportField> relief_report_fields() {
       {"vertices_beyond_base", "Vertices beyond the base", "",
        "Number of vertices that have no base behind them and are free in depth."},
       {"painted_vertices", "Painted vertices", "",
-       "Number of vertices of each kind that is painted: matters_more, matters_less, free, on_base, own_thickness. Null without a painting."},
+       "Number of vertices of each kind that is painted: matters_more, matters_less, free, on_base, own_thickness. Only with a painting."},
       {"stands_out_max_mm", "Largest height above the base", "mm",
-       "How far the relief stands out from its base at most; more than the thickness where it is painted so."},
+       "How far the relief stands out from its base at most; more than the thickness where it is painted so. Only with a painting."},
       {"kkt_residual", "KKT residual", "",
        "Relative error of the optimality conditions (Karush-Kuhn-Tucker) at the solution; practically 0."},
       {"relative_gap", "Distance from the best", "",
@@ -267,8 +267,10 @@ OperationResult run_relief(const OperationCall& call, const ReliefOptions& optio
       solved.base.depth_range(0.5 * plate.width_mm / options.width_mm, 0.5 * plate.height_mm / options.width_mm)
           .value_or(std::pair{0.0, 0.0});
   const double range_mm = options.width_mm * (base_depth.second - base_depth.first) + space.above_mm + space.below_mm;
-  report["painted_vertices"] = painted_vertices(solved.painted.painting);
-  report["stands_out_max_mm"] = space.above_mm;
+  if (const Painting& painting = solved.painted.painting; !painting.empty()) {
+    report["painted_vertices"] = painted_vertices(painting);
+    report["stands_out_max_mm"] = space.above_mm;
+  }
   report["size_mm"] = {plate.width_mm, plate.height_mm, options.plate_mm + range_mm};
   const auto add = [&](const char* name, Bytes bytes) {
     for (const OutputInfo& info : relief_outputs())

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The viewport with what floats over it: view modes, light, side view, legend, notes.
-import { effect, signal, useSignal } from '@preact/signals';
+import { effect, signal, untracked, useSignal } from '@preact/signals';
 import type { ComponentChildren } from 'preact';
 import { useEffect, useMemo, useRef } from 'preact/hooks';
 import { Icon, Segmented } from '../../ui';
@@ -73,7 +73,7 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
     const viewport: Viewport = new Viewport(container.current, {
       mode: drawnMode(mode.value),
       light: light.value,
-      freeRectangle: freeRectangle(null),
+      freeRectangle: freeRectangle(null, false),
       label: 'Model and relief',
       onViewpointChange: (camera, at) => {
         atViewpoint.value = at;
@@ -110,13 +110,17 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
       }),
       keepDrawn(viewport, session, (thickness) => inset.update(thickness)),
       keepPainted(viewport, session),
+      effect(() => {
+        const painting = session.paint.open.value;
+        untracked(() => viewport.setFreeRectangle(freeRectangle(foot.current, painting)));
+      }),
       effect(() =>
         viewport.setResting(session.previews.running.value || session.activity.value.kind !== 'idle'),
       ),
     ];
     const resize = new ResizeObserver(() => {
       isNarrow.value = narrow();
-      viewport.setFreeRectangle(freeRectangle(foot.current));
+      viewport.setFreeRectangle(freeRectangle(foot.current, session.paint.open.peek()));
     });
     resize.observe(container.current);
     if (foot.current) resize.observe(foot.current);
@@ -194,13 +198,13 @@ const areModelsShown = ({ group, paint }: ReliefSession): boolean =>
 /** Light is drawn as values on the relief. */
 const drawnMode = (chosen: ReliefMode): ViewMode => (chosen === 'light' ? 'error' : chosen);
 
-/** What floats stays off the object: light and side view right, notes and legends below. */
-function freeRectangle(foot: Element | null): Insets {
+/** What floats stays off the object: light and side view right, notes and legends below, paint left. */
+function freeRectangle(foot: Element | null, painting: boolean): Insets {
   const height = foot?.getBoundingClientRect().height ?? 0;
   const bottom = height > 0 ? height + 24 : 0;
   return narrow()
     ? { left: 14, top: 70, right: 14, bottom: Math.max(24, bottom) }
-    : { left: 28, top: 68, right: 180, bottom: Math.max(44, bottom) };
+    : { left: painting ? 292 : 28, top: 68, right: 180, bottom: Math.max(44, bottom) };
 }
 
 /** Draws what the session shows; as little as possible is sent again. */

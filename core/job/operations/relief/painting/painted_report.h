@@ -9,9 +9,8 @@
 
 namespace formwright {
 
-/// Number of vertices of each kind; null where nothing is painted.
+/// Number of vertices of each kind.
 inline Json painted_vertices(const Painting& painting) {
-  if (painting.empty()) return nullptr;
   Json counts = {{"matters_more", (painting.weight.array() > 1).count()},
                  {"matters_less", (painting.weight.array() < 1).count()}};
   for (std::size_t k = 1; k < painted_region_names.size(); ++k)

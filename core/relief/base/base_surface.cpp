@@ -33,7 +33,7 @@ BaseSurface::BaseSurface(const TriangleMesh& mesh, std::optional<BaseBands> band
 std::optional<double> BaseSurface::depth_on_ray(const ViewFrame& frame, Eigen::Index vertex, double shift) const {
   if (is_flat()) return shift;
   const Vec3 p = frame.P.row(vertex).transpose();
-  if (bands_) return bands_->depth(bands_->of_ray(frame, p)) + shift;
+  if (bands_) return bands_->depth_on_ray(frame, bands_->of_ray(frame, p), p, shift);
   if (frame.kappa == 0) {
     const std::optional<double> depth = depth_at(p.x(), p.y());
     if (!depth) return std::nullopt;

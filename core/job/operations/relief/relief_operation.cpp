@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "job/operations/relief/relief_operation.h"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "base/format.h"
 #include "geometry/mesh/adjacency.h"
@@ -9,6 +11,7 @@
 #include "formats/png/png16.h"
 #include "job/contract/model_input.h"
 #include "job/contract/operation_options.h"
+#include "job/operations/relief/pieces/piece_files.h"
 #include "job/operations/relief/relief_base.h"
 #include "job/operations/relief/solved_relief.h"
 #include "relief/height_map.h"
@@ -314,6 +317,17 @@ OperationResult run_relief(const OperationCall& call, const ReliefOptions& optio
         if (call.wants(name)) add(name, write_model(solid, *mesh_format_of_extension(name), context));
     }
   }
+  if (wants_pieces(call)) {
+    if (solved.base.bands() == nullptr)
+      throw Error(ErrorCode::invalid_input, "base",
+                  "This base is one piece: choose stairs or strips as the shape of the base, or leave out the files of "
+                  "pieces.");
+    const auto span = context.span(0.9, 1, "Making the pieces");
+    add_piece_files(call,
+                    tiled_relief(frame, *solved.base.bands(), relief.pieces, plate, options,
+                                 solid_tolerance_share * options.thickness_mm, true, context),
+                    *solved.base.bands(), result);
+  }
   report["seconds_read"] = loaded->seconds_read + loaded->seconds_repair;
   report["seconds_setup"] = solved.reused ? 0.0 : solver->seconds_setup();
   report["seconds_solve"] = solved.seconds_solve + (solved.reused ? 0.0 : solver->seconds_factorise());
@@ -333,7 +347,9 @@ Operation relief_operation() {
   operation.summary = "Turns a model into a thin relief that still looks deep from the viewpoint you choose.";
   operation.inputs = {model_input_info(), base_input_info()};
   operation.outputs = relief_outputs();
+  std::ranges::move(piece_outputs(), std::back_inserter(operation.outputs));
   operation.report = relief_report_fields();
+  std::ranges::move(piece_report_fields(), std::back_inserter(operation.report));
   take_options<ReliefOptions>(operation, run_relief);
   return operation;
 }

@@ -86,13 +86,6 @@ std::vector<float> lengths_along_z(const HeightMap& map, const BaseSurface& base
   return lengths;
 }
 
-double max_length_along_z(const BaseSurface& base) {
-  double longest = 1;
-  if (base.bands() != nullptr)
-    for (int k = 0; k < base.bands()->count(); ++k) longest = std::max(longest, base.bands()->along_z(k));
-  return longest;
-}
-
 /// Heights of the base at the map's nodes, mm; NaN beyond its edge.
 std::vector<float> base_heights(const HeightMap& map, const BaseSurface& base, double size_mm, Context& context) {
   std::vector<float> heights(map.height_mm.size());
@@ -118,7 +111,7 @@ HeightMap envelope_over(const CoveringMesh& mesh, double size_mm, PlateSize plat
   HeightMap map = empty_map(plate, pixel_mm);
   const auto range = space.base.depth_range(0.5 * plate.width_mm / size_mm, 0.5 * plate.height_mm / size_mm);
   const auto [least, largest] = range.value_or(std::pair{0.0, 0.0});
-  const double along_z = max_length_along_z(space.base);
+  const double along_z = space.base.max_along_z();
   map.floor_mm = -size_mm * largest - along_z * space.below_mm;
   map.top_mm = -size_mm * least + along_z * space.above_mm;
   std::ranges::fill(map.height_mm, -INFINITY);

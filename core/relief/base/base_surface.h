@@ -23,6 +23,10 @@ class BaseSurface {
   /// Null where it has neither steps nor strips.
   const BaseBands* bands() const { return bands_ ? &*bands_ : nullptr; }
 
+  /// The largest length along z of one unit of length along the base's normal where thickness is counted along it: on
+  /// strips. Else 1.
+  double max_along_z() const;
+
   /// Depth z at which the ray from the viewpoint through a vertex of the model first meets the base, moved by `shift`
   /// along z. On bands, that of the band whose group the ray belongs to, moved along the band's normal: relief on the
   /// walls between steps cannot be made. Nothing where it misses. For a base without overhangs as seen along z, a larger

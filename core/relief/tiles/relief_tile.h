@@ -20,7 +20,7 @@ struct ReliefTile {
   Vec3 origin, right, up;      // a point of the plane, and where right and up lie in it as seen from the front
   Vec3 normal;                 // towards the viewer
   std::optional<Vec3> eye;     // nothing: straight on, along -z
-  std::vector<Vec2> outline;   // convex, counter-clockwise, coordinates along `right` and `up` from `origin`
+  std::vector<Vec2> outline;  // convex, counter-clockwise, coordinates along `right` and `up` from `origin`
 
   /// A place of the plane.
   Vec3 on_plane(const Vec2& place) const { return origin + place.x() * right + place.y() * up; }

@@ -233,8 +233,18 @@ std::vector<std::string> notes_of(const Relief& relief) {
   return notes;
 }
 
+/// Who asks for all files gets those that there are; who asks for nothing but pieces is told that there are none.
+void check_pieces(const OperationCall& call, const ReliefOptions& options) {
+  if (options.base == BaseShape::stairs || options.base == BaseShape::strips || !wants_pieces(call)) return;
+  for (const OutputInfo& info : relief_outputs())
+    if (call.wants(info.name)) return;
+  throw Error(ErrorCode::invalid_input, "base",
+              "This base is one piece: choose stairs or strips as its shape, or ask for other files.");
+}
+
 OperationResult run_relief(const OperationCall& call, const ReliefOptions& options) {
   Context& context = call.context;
+  check_pieces(call, options);
   const SolvedRelief solved = [&] {
     const auto span = context.span(0, 0.9, "Reading the model");
     return solve_relief(call, options);
@@ -257,7 +267,8 @@ OperationResult run_relief(const OperationCall& call, const ReliefOptions& optio
   const auto base_depth =
       solved.base.depth_range(0.5 * plate.width_mm / options.width_mm, 0.5 * plate.height_mm / options.width_mm)
           .value_or(std::pair{0.0, 0.0});
-  const double range_mm = options.width_mm * (base_depth.second - base_depth.first) + space.above_mm + space.below_mm;
+  const double range_mm = options.width_mm * (base_depth.second - base_depth.first) +
+                          solved.base.max_along_z() * (space.above_mm + space.below_mm);
   report["size_mm"] = {plate.width_mm, plate.height_mm, options.plate_mm + range_mm};
   const auto add = [&](const char* name, Bytes bytes) {
     for (const OutputInfo& info : relief_outputs())
@@ -317,11 +328,7 @@ OperationResult run_relief(const OperationCall& call, const ReliefOptions& optio
         if (call.wants(name)) add(name, write_model(solid, *mesh_format_of_extension(name), context));
     }
   }
-  if (wants_pieces(call)) {
-    if (solved.base.bands() == nullptr)
-      throw Error(ErrorCode::invalid_input, "base",
-                  "This base is one piece: choose stairs or strips as the shape of the base, or leave out the files of "
-                  "pieces.");
+  if (wants_pieces(call) && solved.base.bands() != nullptr) {
     const auto span = context.span(0.9, 1, "Making the pieces");
     add_piece_files(call,
                     tiled_relief(frame, *solved.base.bands(), relief.pieces, plate, options,

@@ -18,6 +18,7 @@ import type { Services } from '../../shared/session/services';
 import type { Viewpoint } from '../../view';
 import { ForestSession } from './forest/forest_session';
 import { ReliefLight } from './light/relief_light';
+import { ReliefPieces } from './pieces/relief_pieces';
 import { baseOf, parametersOf } from './meshes';
 import type { ReliefDocument } from './relief_document';
 import { baseInputs, currentResult, relief, takeBase } from './relief_document';
@@ -58,6 +59,7 @@ export class ReliefSession extends RoomSession<ReliefDocument> {
   });
   readonly shown = this.previews.shown;
   readonly light = new ReliefLight(this);
+  readonly pieces = new ReliefPieces(this);
   readonly #previewed = signal<Measured | null>(null);
   readonly #previewMemory_mb = signal(0);
 
@@ -69,6 +71,7 @@ export class ReliefSession extends RoomSession<ReliefDocument> {
     });
     this.previews.startFollowing();
     this.light.startFollowing();
+    this.pieces.startFollowing();
   }
 
   openFiles(files: readonly File[]): Promise<boolean> {

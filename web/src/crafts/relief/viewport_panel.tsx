@@ -13,10 +13,13 @@ import { originalData, scaled } from '../../shared/panels/shaded_mesh';
 import { ForestButton } from './forest/forest_button';
 import { brightnessMapping } from './light/light_values';
 import { errorMapping, errorOf, litData, plateOf, reliefData, viewpointOf } from './meshes';
+import { placed } from './pieces/piece_meshes';
+import { PiecesBar } from './pieces/pieces_bar';
+import type { MadePieces } from './pieces/relief_pieces';
 import type { ReliefSession } from './relief_session';
 import type { LitRelief, Shown } from './shown';
 
-type ReliefMode = ViewMode | 'light';
+type ReliefMode = ViewMode | 'light' | 'pieces';
 
 /** The viewport's own state outlives a visit to another page. */
 export const mode = signal<ReliefMode>('swipe');
@@ -39,6 +42,7 @@ const modes: readonly { value: ReliefMode; label: string; short?: string }[] = [
   { value: 'original', label: 'Original' },
   { value: 'error', label: 'Shading difference' },
   { value: 'light', label: 'In real light', short: 'Light' },
+  { value: 'pieces', label: 'In pieces', short: 'Pieces' },
 ];
 
 export interface ViewportPanelProps {
@@ -84,6 +88,8 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
       effect(() => followOnly(session)),
       effect(() => {
         session.light.open.value = mode.value === 'light';
+        session.pieces.open.value = mode.value === 'pieces';
+        if (mode.value === 'pieces' && !session.pieces.possible.value) mode.value = 'relief';
         viewport.setColourMapping(mode.value === 'light' ? brightnessMapping : errorMapping);
         viewport.setMode(drawnMode(mode.value));
       }),
@@ -100,7 +106,7 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
     if (foot.current) resize.observe(foot.current);
     onViewport(viewport);
     return () => {
-      session.light.open.value = false;
+      session.light.open.value = session.pieces.open.value = false;
       onViewport(null);
       resize.disconnect();
       for (const end of stop) end();
@@ -111,7 +117,8 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
   }, []);
 
   const shown = session.shown.value;
-  const options = modes.map(({ value, label, short }) => ({
+  const offered = modes.filter(({ value }) => value !== 'pieces' || session.pieces.possible.value);
+  const options = offered.map(({ value, label, short }) => ({
     value,
     label: isNarrow.value ? (short ?? label) : label,
     disabledReason:
@@ -140,6 +147,7 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
             mean={figure(shown.report, 'normal_error_mean_deg') ?? undefined}
           />
         ) : null}
+        {mode.value === 'pieces' ? <PiecesBar pieces={session.pieces} /> : null}
         {session.previews.running.value && session.model.original.value && shown === null ? (
           <p class="label-chip">
             <Icon name="clock" small /> Making the first preview
@@ -158,8 +166,9 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
   );
 }
 
-/** Light is drawn as values on the relief. */
-const drawnMode = (chosen: ReliefMode): ViewMode => (chosen === 'light' ? 'error' : chosen);
+/** Light is drawn as values on the relief, pieces in its place. */
+const drawnMode = (chosen: ReliefMode): ViewMode =>
+  chosen === 'light' ? 'error' : chosen === 'pieces' ? 'relief' : chosen;
 
 /** What floats stays off the object: light and side view right, notes and legends below. */
 function freeRectangle(foot: Element | null): Insets {
@@ -203,9 +212,14 @@ function keepDrawn(
     // The light on the relief before stays until the new one is cast.
     const found = mode.value === 'light' ? session.light.lit.value : null;
     const lit = found?.of.from === shown.from ? found : null;
-    if (drawnRelief === (lit ?? shown)) return;
+    const made = mode.value === 'pieces' ? session.pieces.made.value : null;
+    const pieces = made?.of.from === shown.from ? made : null;
+    // Pieces move while they stay the same.
+    if (pieces) drawPieces(viewport, pieces, drawnRelief, session.pieces.apart.value);
+    else viewport.setMarkers([]);
+    if (drawnRelief === (pieces ?? lit ?? shown)) return;
     if (lit) drawLit(viewport, lit, drawnRelief, Number(inForceOf(session, lit.of, 'thickness_mm')));
-    else drawShaded(viewport, shown, drawnRelief, thickness);
+    else if (!pieces) drawShaded(viewport, shown, drawnRelief, thickness);
     const viewpoint = viewpointOf(shown.report, Number(inForceOf(session, shown, 'field_of_view_deg') ?? 20));
     if (viewpoint) {
       const first = drawnModel !== original.from;
@@ -214,13 +228,13 @@ function keepDrawn(
       if (stay) viewport.lookFromViewpoint(false);
       drawnModel = original.from;
     }
-    drawnRelief = lit ?? shown;
+    drawnRelief = pieces ?? lit ?? shown;
     onRelief(thickness);
   };
   return effect(draw);
 }
 
-type Drawn = Shown | LitRelief | null;
+type Drawn = Shown | LitRelief | MadePieces | null;
 
 function drawShaded(viewport: Viewport, shown: Shown, before: Drawn, thickness_mm: number): void {
   const plate: Plate | null = plateOf(shown.report, thickness_mm, shown.base);
@@ -248,6 +262,15 @@ function drawLit(viewport: Viewport, lit: LitRelief, before: Drawn, thickness_mm
   }
   const plate = plateOf(lit.of.report, thickness_mm);
   viewport.setRelief(litData(lit), plate && { ...plate, mesh: false });
+}
+
+/** They have their plates in themselves. */
+function drawPieces(viewport: Viewport, made: MadePieces, before: Drawn, apart: number): void {
+  const { mesh, markers } = placed(made.pieces, made.report, apart);
+  const plate = plateOf(made.report, 0);
+  if (before === made) viewport.updateRelief(mesh.positions);
+  else viewport.setRelief(mesh, plate && { ...plate, mesh: false });
+  viewport.setMarkers(markers);
 }
 
 function inForceOf(session: ReliefSession, shown: Shown, name: string) {

@@ -2,12 +2,15 @@
 #include "relief/tiles/tile_solid.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 
 #include "geometry/booleans/booleans.h"
 #include "geometry/mesh/adjacency.h"
 #include "geometry/mesh/file_grid.h"
 #include "geometry/mesh/measures.h"
+#include "relief/forest/plan/pillar.h"
 #include "relief/right_triangle_network.h"
 
 namespace formwright {
@@ -88,18 +91,20 @@ Front front_of(const TileGrid& grid, double tolerance_mm, const auto& place, Con
 }
 
 /// Below the rim a ring of as many vertices at one depth, which lie on straight lines, so that each side of the back
-/// needs its two corners only.
-TriangleMesh closed_below(Front& front, const TileGrid& grid, double ring_mm, double back_mm, const auto& place) {
+/// needs its two corners only. Returns these, in the order of the rim, at z = 0.
+std::vector<int> add_sides(Front& front, const TileGrid& grid, double ring_mm, double back_mm, const auto& place) {
   MeshParts& parts = front.parts;
   const std::size_t count = front.rim.size();
-  std::vector<int> ring, corner;  // of the back; of each rim vertex, -1 between corners
-  std::vector<int> corners;
+  std::vector<int> ring, corner, corners;  // of each rim vertex, the corners' -1 between them
   for (const int top : front.rim) {
     const GridNode at = front.node[static_cast<std::size_t>(top)];
     const Vec2 on_tile = grid.place(at.x, at.y);
     ring.push_back(parts.add(place(on_tile, -ring_mm)));
-    corner.push_back(grid.is_corner(at.x, at.y) ? parts.add(place(on_tile, -back_mm)) : -1);
-    if (corner.back() >= 0) corners.push_back(corner.back());
+    corner.push_back(-1);
+    if (!grid.is_corner(at.x, at.y)) continue;
+    const Vec3 below = place(on_tile, -back_mm);
+    corner.back() = parts.add(Vec3(below.x(), below.y(), 0));
+    corners.push_back(corner.back());
   }
   std::size_t first = 0;
   while (corner[first] < 0) ++first;
@@ -114,8 +119,35 @@ TriangleMesh closed_below(Front& front, const TileGrid& grid, double ring_mm, do
       below = corner[next];
     }
   }
-  for (std::size_t k = 2; k < corners.size(); ++k) parts.face(corners[0], corners[k], corners[k - 1]);
-  return parts.mesh();
+  return corners;
+}
+
+/// The back at z = 0 with what is cut out of it: that of a plate over the same corners, in which the booleans are
+/// quick.
+void add_sunk_back(MeshParts& parts, const std::vector<int>& corners, const Outline& outline, double plate_mm,
+                   const std::vector<TriangleMesh>& grooves, Context& context) {
+  ExactSolid sunk, plate = ExactSolid::from_mesh(prism(outline, 0, plate_mm), "mesh", context);
+  for (const TriangleMesh& groove : grooves) {
+    const ExactSolid one = ExactSolid::from_mesh(groove, "mesh", context);
+    sunk = sunk.empty() ? one : unite(sunk, one, context);
+  }
+  const TriangleMesh cut = subtract(plate, sunk, context).mesh();
+  std::map<std::array<double, 2>, int> corner_at;
+  for (const int corner : corners) {
+    const Vec3& place = parts.places[static_cast<std::size_t>(corner)];
+    corner_at[{place.x(), place.y()}] = corner;
+  }
+  std::vector<int> vertex_of(static_cast<std::size_t>(cut.V.rows()), -1);
+  for (Eigen::Index i = 0; i < cut.V.rows(); ++i) {
+    const Vec3 place = cut.V.row(i).transpose();
+    if (place.z() == plate_mm) continue;  // top and sides of that plate are not those of the piece
+    const auto found = corner_at.find({place.x(), place.y()});
+    vertex_of[static_cast<std::size_t>(i)] = found != corner_at.end() ? found->second : parts.add(place);
+  }
+  for (Eigen::Index f = 0; f < cut.F.rows(); ++f) {
+    const auto vertex = [&](int k) { return vertex_of[static_cast<std::size_t>(cut.F(f, k))]; };
+    if (vertex(0) >= 0 && vertex(1) >= 0 && vertex(2) >= 0) parts.face(vertex(0), vertex(1), vertex(2));
+  }
 }
 
 }  // namespace
@@ -128,25 +160,20 @@ TileSolid tile_solid(const ReliefTile& tile, const TileGrid& grid, const TileSol
     return Vec3(off.dot(tile.right), off.dot(tile.up), off.dot(tile.normal) + solid.back_mm);
   };
   Front front = front_of(grid, options.tolerance_mm, lying, context);
-  solid.mesh = closed_below(front, grid, options.room.below_mm + 0.5 * options.plate_mm, solid.back_mm, lying);
-  solid.corner_mm = solid.mesh.V.leftCols<2>().colwise().minCoeff().transpose();
-  const auto move = [&](TriangleMesh& mesh) {
-    mesh.V.leftCols<2>().rowwise() -= solid.corner_mm.transpose();
-  };
-  move(solid.mesh);
-  std::vector<Vec2> back;
-  for (const Vec2& p : tile.outline) back.push_back(lying(p, -solid.back_mm).head<2>() - solid.corner_mm);
+  MeshParts& parts = front.parts;
+  const std::vector<int> corners =
+      add_sides(front, grid, options.room.below_mm + 0.5 * options.plate_mm, solid.back_mm, lying);
+  Outline back;
+  for (const int corner : corners) back.push_back(parts.places[static_cast<std::size_t>(corner)].head<2>());
   std::vector<TriangleMesh> grooves;
   if (options.number > 0) grooves = number_grooves(back, options.number, options.plate_mm);
-  if (!grooves.empty()) {
-    ExactSolid sunk, whole = ExactSolid::from_mesh(solid.mesh, "mesh", context);
-    for (const TriangleMesh& groove : grooves) {
-      const ExactSolid one = ExactSolid::from_mesh(groove, "mesh", context);
-      sunk = sunk.empty() ? one : unite(sunk, one, context);
-    }
-    solid.mesh = subtract(whole, sunk, context).mesh();
-    solid.numbered = true;
-  }
+  solid.numbered = !grooves.empty();
+  if (solid.numbered) add_sunk_back(parts, corners, back, options.plate_mm, grooves, context);
+  else
+    for (std::size_t k = 2; k < corners.size(); ++k) parts.face(corners[0], corners[k], corners[k - 1]);
+  solid.mesh = parts.mesh();
+  solid.corner_mm = solid.mesh.V.leftCols<2>().colwise().minCoeff().transpose();
+  solid.mesh.V.leftCols<2>().rowwise() -= solid.corner_mm.transpose();
   solid.mesh = on_file_grid(solid.mesh);
   solid.volume_mm3 = signed_volume(solid.mesh);
   solid.watertight = Adjacency(solid.mesh).is_closed();

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "job/operations/relief/pieces/piece_files.h"
 
+#include <algorithm>
+
 #include "fabrication/page_tiles.h"
 #include "formats/container/zip.h"
 #include "formats/glb/glb_nodes.h"
@@ -64,7 +66,7 @@ void report_pieces(Json& report, const std::vector<ReliefPiece>& pieces) {
     const Vec3 size = solid.mesh.V.colwise().maxCoeff().transpose();
     list.push_back({{"number", k + 1},
                     {"size_mm", {size.x(), size.y(), size.z()}},
-                    {"depth_mm", tile.depth_mm()},
+                    {"depth_mm", std::max(0.0, tile.depth_mm())},
                     {"turn_deg", tile.turn_deg()},
                     {"volume_ml", solid.volume_mm3 / 1000},
                     {"numbered", solid.numbered}});

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double gap_mm = 12, title_height_mm = 4, word_height_mm = 3, max_number_height_mm = 8,
                  number_share = 0.3;  // of a piece's smaller side
-constexpr double cross_arm_mm = 2;
+constexpr double cross_arm_mm = 2, column_mm = 22;  // of the table
 
 /// Paths with the room that they take.
 struct View {
@@ -99,23 +99,23 @@ double signed_turn_deg(const BaseBands& bands, int band) {
 View table(const std::vector<ReliefPiece>& pieces, const BaseBands& bands) {
   View view;
   const double line = 2 * word_height_mm;
-  bool is_turned = false;
-  for (const ReliefPiece& piece : pieces) is_turned = is_turned || piece.tile.turn_deg() > 0.05;
-  std::vector<std::string> rows{is_turned ? "PIECE  WIDTH HEIGHT THICKNESS  BEHIND THE FRONT  TURN IN DEGREES"
-                                          : "PIECE  WIDTH HEIGHT THICKNESS  BEHIND THE FRONT"};
+  const auto add_row = [&](std::size_t row, const std::vector<std::string>& columns) {
+    for (std::size_t c = 0; c < columns.size(); ++c)
+      view.words(columns[c], Vec2(column_mm * (static_cast<double>(c) + 0.5), -line * static_cast<double>(row)),
+                 word_height_mm);
+  };
+  add_row(0, {"PIECE", "WIDTH", "HEIGHT", "THICK", "BEHIND", "TURN"});
   for (std::size_t k = 0; k < pieces.size(); ++k) {
     const auto& [tile, solid] = pieces[k];
     const Vec3 size = solid.mesh.V.colwise().maxCoeff().transpose();
-    std::string row = std::to_string(k + 1) + "  ";
-    for (const double length : {size.x(), size.y(), size.z()}) row += with_decimals(length, 1) + " ";
-    row += " " + with_decimals(std::max(0.0, tile.depth_mm()), 1);
-    if (is_turned) row += "  " + with_decimals(signed_turn_deg(bands, tile.band), 1);
-    rows.push_back(row);
+    add_row(k + 1, {std::to_string(k + 1), with_decimals(size.x(), 1), with_decimals(size.y(), 1),
+                    with_decimals(size.z(), 1), with_decimals(std::max(0.0, tile.depth_mm()), 1),
+                    with_decimals(signed_turn_deg(bands, tile.band), 1)});
   }
-  rows.push_back("ALL LENGTHS IN MM");
-  for (std::size_t k = 0; k < rows.size(); ++k)
-    view.words(rows[k],
-               Vec2(0.5 * words_width_mm(rows[k], word_height_mm), -line * static_cast<double>(k)), word_height_mm);
+  const std::string units = "MM AND DEGREES";
+  view.words(units,
+             Vec2(0.5 * words_width_mm(units, word_height_mm), -line * static_cast<double>(pieces.size() + 1)),
+             word_height_mm);
   return view;
 }
 

@@ -17,8 +17,7 @@ Bytes write_glb_nodes(std::span<const NamedMesh> meshes, Context& context) {
     const int indices = glb.add_indices(3 * static_cast<std::size_t>(F.rows()), vertices, [&](std::size_t i) {
       return F(static_cast<Eigen::Index>(i / 3), static_cast<Eigen::Index>(i % 3));
     });
-    const Json primitive = {
-        {"attributes", {{"POSITION", positions}}}, {"indices", indices}, {"material", 0}};
+    const Json primitive = {{"attributes", {{"POSITION", positions}}}, {"indices", indices}, {"material", 0}};
     const std::size_t number = list.size();
     list.push_back({{"name", one.name}, {"primitives", Json::array({primitive})}});
     nodes.push_back({{"name", one.name}, {"mesh", number}, {"scale", {0.001, 0.001, 0.001}}});
@@ -29,8 +28,7 @@ Bytes write_glb_nodes(std::span<const NamedMesh> meshes, Context& context) {
   json["scenes"] = Json::array({{{"nodes", roots}}});
   json["nodes"] = nodes;
   json["meshes"] = list;
-  const Json surface = {
-      {"baseColorFactor", {0.8, 0.8, 0.8, 1.0}}, {"metallicFactor", 0.0}, {"roughnessFactor", 0.8}};
+  const Json surface = {{"baseColorFactor", {0.8, 0.8, 0.8, 1.0}}, {"metallicFactor", 0.0}, {"roughnessFactor", 0.8}};
   json["materials"] = Json::array({{{"name", "plain"}, {"pbrMetallicRoughness", surface}}});
   return glb.finish(json);
 }

@@ -15,8 +15,8 @@ struct NamedMesh {
   TriangleMesh mesh;  // mm, y up and z towards the viewer, as glTF has them
 };
 
-/// float32 positions in mm under nodes of scale 0.001, without normals: viewers then draw flat faces (glTF 2.0, 3.7.2.1).
-/// Throws Error: invalid_input where the file would exceed 4 GB, cancelled.
+/// float32 positions in mm under nodes of scale 0.001, without normals: viewers then draw flat faces
+/// (glTF 2.0, 3.7.2.1). Throws Error: invalid_input where the file would exceed 4 GB, cancelled.
 Bytes write_glb_nodes(std::span<const NamedMesh> meshes, Context& context);
 
 }  // namespace formwright

@@ -13,8 +13,8 @@ namespace formwright {
 class BaseBands {
  public:
   /// `depth`: z of each band, in the order of the place t across the plate, at least one; `border`: t between each and
-  /// the next, ascending; `turn_deg`: of the direction in which t is measured, from x towards y. `slope`: dz / dt of each
-  /// band, whose `depth` then counts at t = 0; empty for steps, whose depths ascend.
+  /// the next, ascending; `turn_deg`: of the direction in which t is measured, from x towards y. `slope`: dz / dt of
+  /// each band, whose `depth` then counts at t = 0; empty for steps, whose depths ascend.
   BaseBands(std::vector<double> depth, std::vector<double> border, double turn_deg, std::vector<double> slope = {});
 
   int count() const { return static_cast<int>(depth_.size()); }

@@ -9,8 +9,8 @@
 namespace formwright {
 namespace {
 
-constexpr double max_turn_deg = 75;       // of a strip against the plate
-constexpr double least_facing = 0.2;      // of the ray's direction along a strip's normal, where it is seen flattest
+constexpr double max_turn_deg = 75;   // of a strip against the plate
+constexpr double min_facing = 0.2;  // of the ray's direction along a strip's normal, where it is seen flattest
 constexpr double degree = std::numbers::pi / 180;
 
 [[noreturn]] void refuse(int strip) {
@@ -58,7 +58,7 @@ BaseStrips base_strips(const ReliefOptions& options, const ViewFrame& frame, dou
     depth.push_back(z[k] - slope[k] * t[k]);
     for (const std::size_t end : {k, k + 1}) {
       const Vec2 ray = Vec2(frame.kappa * t[end], 1 + frame.kappa * z[end]).normalized();
-      if (!(ray.dot(Vec2(-slope[k], 1).normalized()) >= least_facing)) refuse(static_cast<int>(k));
+      if (!(ray.dot(Vec2(-slope[k], 1).normalized()) >= min_facing)) refuse(static_cast<int>(k));
     }
   }
   const std::vector<double> folds(t.begin() + 1, t.end() - 1);

@@ -12,7 +12,8 @@ namespace formwright {
 
 struct BaseStrips {
   BaseBands bands;
-  std::vector<double> t, z;  // of the two ends and of the folds between, from one side to the other; the foremost z is 0
+  std::vector<double> t,
+      z;  // of the two ends and of the folds between, from one side to the other; the foremost z is 0
 };
 
 /// All strips have the same width. From the viewpoint their two ends are seen at the ends of the plate, which reaches

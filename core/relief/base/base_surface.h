@@ -29,8 +29,8 @@ class BaseSurface {
 
   /// Depth z at which the ray from the viewpoint through a vertex of the model first meets the base, moved by `shift`
   /// along z. On bands, that of the band whose group the ray belongs to, moved along the band's normal: relief on the
-  /// walls between steps cannot be made. Nothing where it misses. For a base without overhangs as seen along z, a larger
-  /// shift is met later.
+  /// walls between steps cannot be made. Nothing where it misses. For a base without overhangs as seen along z, a
+  /// larger shift is met later.
   std::optional<double> depth_on_ray(const ViewFrame& frame, Eigen::Index vertex, double shift) const;
 
   /// Depth z of the base at a point of the plate, seen straight on. Nothing beyond its edge.

@@ -9,7 +9,7 @@
 namespace formwright {
 namespace {
 
-constexpr double least_share = 1e-6;  // of the plate's front: what covers less is no tile
+constexpr double min_share = 1e-6;  // of the plate's front: what covers less is no tile
 
 double twice_area(const std::vector<Vec2>& polygon) {
   double sum = 0;
@@ -95,7 +95,7 @@ std::vector<ReliefTile> relief_tiles(const ViewFrame& frame, const BaseBands& ba
       passed = std::max(passed, size_mm * bands.border_on_plate(frame, band));
       seen = clipped(seen, bands.across(), passed, false);
     }
-    if (seen.size() < 3 || twice_area(seen) < 2 * least_share * plate.width_mm * plate.height_mm) continue;
+    if (seen.size() < 3 || twice_area(seen) < 2 * min_share * plate.width_mm * plate.height_mm) continue;
     ReliefTile tile = plane_of(frame, bands, band, size_mm);
     Vec2 middle(0, 0);
     for (const Vec2& p : seen) {

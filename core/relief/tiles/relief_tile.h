@@ -10,16 +10,16 @@
 
 namespace formwright {
 
-/// From view coordinates to those of the tiles: mm, x right, y up, z towards the viewer, the middle of the plate's front
-/// at the origin.
+/// From view coordinates to those of the tiles: mm, x right, y up, z towards the viewer, the middle of the plate's
+/// front at the origin.
 Positions to_scene(const Positions& view_positions, double size_mm);
 
 /// One plane of the base, cut where rays from the viewpoint leave it. All in mm.
 struct ReliefTile {
-  int band = 0;                // of BaseBands
-  Vec3 origin, right, up;      // a point of the plane, and where right and up lie in it as seen from the front
-  Vec3 normal;                 // towards the viewer
-  std::optional<Vec3> eye;     // nothing: straight on, along -z
+  int band = 0;               // of BaseBands
+  Vec3 origin, right, up;     // a point of the plane, and where right and up lie in it as seen from the front
+  Vec3 normal;                // towards the viewer
+  std::optional<Vec3> eye;    // nothing: straight on, along -z
   std::vector<Vec2> outline;  // convex, counter-clockwise, coordinates along `right` and `up` from `origin`
 
   /// A place of the plane.

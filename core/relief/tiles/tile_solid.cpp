@@ -47,9 +47,9 @@ GridNode same_place(const TileGrid& grid, GridNode p) {
 /// The front, and its rim as it runs counter-clockwise from the lower left.
 struct Front {
   MeshParts parts;
-  std::vector<GridNode> node;     // of each vertex
-  std::vector<int> vertex_of;     // of each node, -1
-  std::vector<int> rim;           // vertices
+  std::vector<GridNode> node;  // of each vertex
+  std::vector<int> vertex_of;  // of each node, -1
+  std::vector<int> rim;        // vertices
 };
 
 Front front_of(const TileGrid& grid, double tolerance_mm, const auto& place, Context& context) {
@@ -184,7 +184,8 @@ TriangleMesh in_place(const TileSolid& solid, const ReliefTile& tile) {
   TriangleMesh placed = solid.mesh;
   for (Eigen::Index i = 0; i < placed.V.rows(); ++i) {
     const Vec3 p = solid.mesh.V.row(i).transpose();
-    placed.V.row(i) = (tile.on_plane(p.head<2>() + solid.corner_mm) + (p.z() - solid.back_mm) * tile.normal).transpose();
+    placed.V.row(i) =
+        (tile.on_plane(p.head<2>() + solid.corner_mm) + (p.z() - solid.back_mm) * tile.normal).transpose();
   }
   return on_file_grid(placed);
 }

@@ -28,8 +28,7 @@ enum class BaseShape { flat, cylinder, wave, groove, stairs, strips };
 template <>
 struct EnumNames<BaseShape> {
   static constexpr std::array<std::string_view, 6> names{"flat", "cylinder", "wave", "groove", "stairs", "strips"};
-  static constexpr std::array<std::string_view, 6> labels{"Flat",     "Cylinder", "Waves",
-                                                          "V groove", "Stairs",   "Strips"};
+  static constexpr std::array<std::string_view, 6> labels{"Flat", "Cylinder", "Waves", "V groove", "Stairs", "Strips"};
 };
 
 /// How strips follow each other.

@@ -102,7 +102,8 @@ TEST_CASE("BaseStrips.AShiftIsMeasuredAlongTheStripsNormal") {
 
 TEST_CASE("BaseStrips.RefusesStripsSeenFromTheirEdge") {
   const ViewFrame frame = make_view_frame(test::icosphere(2), folded(22.5, 5));
-  CHECK_THROWS_WITH(base_strips(folded(30, 7), frame, 0.5, 0), ContainsSubstring("Strip 1 would be seen from its edge"));
+  CHECK_THROWS_WITH(base_strips(folded(30, 7), frame, 0.5, 0),
+                    ContainsSubstring("Strip 1 would be seen from its edge"));
   CHECK_THROWS_AS(base_strips(folded(22.5, 40), frame, 0.5, 0), Error);
   CHECK_NOTHROW(base_strips(folded(22.5, 40, BaseBend::zigzag), frame, 0.5, 0));
 }

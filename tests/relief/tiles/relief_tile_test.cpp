@@ -116,8 +116,7 @@ TEST_CASE("ReliefTile.StripsGoThroughTheirFolds") {
     for (const double y : {-30.0, 12.0})
       for (const ReliefTile& tile : {t.tiles[k], t.tiles[k + 1]})
         CHECK_THAT(tile.normal.dot(Vec3(100 * fold_t, y, -100 * fold_z) - tile.origin), WithinAbs(0, 1e-12));
-    CHECK_THAT(std::acos(t.tiles[k].normal.dot(t.tiles[k + 1].normal)) * 180 / std::numbers::pi,
-               WithinAbs(22.5, 1e-9));
+    CHECK_THAT(std::acos(t.tiles[k].normal.dot(t.tiles[k + 1].normal)) * 180 / std::numbers::pi, WithinAbs(22.5, 1e-9));
     CHECK(t.tiles[k].on_plane(t.tiles[k].lower()).x() < t.tiles[k + 1].on_plane(t.tiles[k + 1].lower()).x());
   }
 }

@@ -117,7 +117,8 @@ Seen compared(const Tiled& t, const ReliefOptions& options) {
                          t.plate.height_mm * ((row + 0.41) / across - 0.5), 0);
       const Vec3 ray = (through - eye).normalized();
       const auto whole_hit = surface.first_hit(eye, ray, 0, 5 * eye.z()),
-                 part_hit = parts.first_hit(eye, ray, 0, 5 * eye.z()), solid_hit = solids.first_hit(eye, ray, 0, 5 * eye.z());
+                 part_hit = parts.first_hit(eye, ray, 0, 5 * eye.z()),
+                 solid_hit = solids.first_hit(eye, ray, 0, 5 * eye.z());
       ++rays;
       REQUIRE(solid_hit.has_value());  // no gap between the pieces, nor at their ends
       if (whole_hit.has_value() != part_hit.has_value()) {

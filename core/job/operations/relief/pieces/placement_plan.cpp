@@ -13,7 +13,7 @@ namespace formwright {
 namespace {
 
 constexpr double gap_mm = 12, title_height_mm = 4, word_height_mm = 3, max_number_height_mm = 8,
-                 number_share = 0.3;  // of a piece's smaller side
+                 number_share = 0.3;                // of a piece's smaller side
 constexpr double cross_arm_mm = 2, column_mm = 22;  // of the table
 
 /// Paths with the room that they take.
@@ -108,13 +108,12 @@ View table(const std::vector<ReliefPiece>& pieces, const BaseBands& bands) {
   for (std::size_t k = 0; k < pieces.size(); ++k) {
     const auto& [tile, solid] = pieces[k];
     const Vec3 size = solid.mesh.V.colwise().maxCoeff().transpose();
-    add_row(k + 1, {std::to_string(k + 1), with_decimals(size.x(), 1), with_decimals(size.y(), 1),
-                    with_decimals(size.z(), 1), with_decimals(std::max(0.0, tile.depth_mm()), 1),
-                    with_decimals(signed_turn_deg(bands, tile.band), 1)});
+    add_row(k + 1,
+            {std::to_string(k + 1), with_decimals(size.x(), 1), with_decimals(size.y(), 1), with_decimals(size.z(), 1),
+             with_decimals(std::max(0.0, tile.depth_mm()), 1), with_decimals(signed_turn_deg(bands, tile.band), 1)});
   }
   const std::string units = "MM AND DEGREES";
-  view.words(units,
-             Vec2(0.5 * words_width_mm(units, word_height_mm), -line * static_cast<double>(pieces.size() + 1)),
+  view.words(units, Vec2(0.5 * words_width_mm(units, word_height_mm), -line * static_cast<double>(pieces.size() + 1)),
              word_height_mm);
   return view;
 }

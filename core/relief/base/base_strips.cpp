@@ -9,8 +9,8 @@
 namespace formwright {
 namespace {
 
-constexpr double max_turn_deg = 75;   // of a strip against the plate
-constexpr double min_facing = 0.2;  // of the ray's direction along a strip's normal, where it is seen flattest
+constexpr double max_turn_deg = 75;  // of a strip against the plate
+constexpr double min_facing = 0.2;   // of the ray's direction along a strip's normal, where it is seen flattest
 constexpr double degree = std::numbers::pi / 180;
 
 [[noreturn]] void refuse(int strip) {

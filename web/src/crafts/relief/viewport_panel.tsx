@@ -118,9 +118,11 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
 
   const shown = session.shown.value;
   const offered = modes.filter(({ value }) => value !== 'pieces' || session.pieces.possible.value);
+  // Six views fit beside each other on a phone with shorter names only.
+  const crowded = offered.length === modes.length;
   const options = offered.map(({ value, label, short }) => ({
     value,
-    label: isNarrow.value ? (short ?? label) : label,
+    label: isNarrow.value ? (short ?? (crowded ? label.replace(' difference', '') : label)) : label,
     disabledReason:
       shown === null && value !== 'original' ? 'Available when the first preview is ready' : undefined,
   }));

@@ -203,7 +203,9 @@ export function parseNodes(bytes: Uint8Array<ArrayBuffer>): NamedSolid[] {
     const [scale = 1] = numbers(node['scale']);
     return {
       name: String(node['name'] ?? ''),
-      positions: glb.floats(object(primitive['attributes'])['POSITION']).map((metres) => 1000 * scale * metres),
+      positions: glb
+        .floats(object(primitive['attributes'])['POSITION'])
+        .map((metres) => 1000 * scale * metres),
       indices: glb.integers(primitive['indices']),
     };
   });

@@ -32,7 +32,9 @@ const middleOf = ({ low, high }: { low: Vec3; high: Vec3 }): Vec3 => [
 export function shiftsOf(pieces: readonly Piece[], apart: number): Vec3[] {
   const middles = pieces.map(middleOf);
   const mean = [0, 1, 2].map((k) => middles.reduce((sum, m) => sum + (m[k] ?? 0), 0) / middles.length);
-  return middles.map((m) => [0, 1, 2].map((k) => 0.5 * apart * ((m[k] ?? 0) - (mean[k] ?? 0))) as unknown as Vec3);
+  return middles.map(
+    (m) => [0, 1, 2].map((k) => 0.5 * apart * ((m[k] ?? 0) - (mean[k] ?? 0))) as unknown as Vec3,
+  );
 }
 
 /** From the plate's axes to the model's, as the report says how they lie. */

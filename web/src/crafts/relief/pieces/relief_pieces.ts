@@ -18,7 +18,10 @@ import type { Piece } from './piece_meshes';
 import { pieceOf } from './piece_meshes';
 
 /** What it needs of the room. */
-type PiecesRoom = Pick<RoomSession<ReliefDocument>, 'services' | 'document' | 'active' | 'subject' | 'operation'> & {
+type PiecesRoom = Pick<
+  RoomSession<ReliefDocument>,
+  'services' | 'document' | 'active' | 'subject' | 'operation'
+> & {
   readonly shown: ReadonlySignal<Shown | null>;
   readonly fits: ReadonlySignal<boolean>;
   readonly model: { readonly previewSubject: ReadonlySignal<Subject | null> };
@@ -55,7 +58,9 @@ export class ReliefPieces {
   readonly possible = computed(() => {
     const { parameters, base } = this.#room.document.value;
     const operation = this.#room.operation.value;
-    return base === null && operation !== null && basesInPieces.includes(inForce(operation, parameters, 'base'));
+    return (
+      base === null && operation !== null && basesInPieces.includes(inForce(operation, parameters, 'base'))
+    );
   });
   readonly #room: PiecesRoom;
   readonly #latest = new LatestOnly<PiecesRequest>(

@@ -79,6 +79,15 @@ std::vector<int> node_bands(const HeightMap& map, const BaseBands& bands, double
   return band;
 }
 
+/// Length along z of what is counted along the base's normal at every node, where that is not z: on strips. Else empty.
+std::vector<float> lengths_along_z(const HeightMap& map, const BaseSurface& base, double size_mm) {
+  std::vector<float> lengths;
+  if (base.bands() == nullptr) return lengths;
+  for (const int band : node_bands(map, *base.bands(), size_mm))
+    lengths.push_back(static_cast<float>(base.bands()->along_z(band)));
+  return lengths;
+}
+
 /// Heights of the base at the map's nodes, mm; NaN beyond its edge.
 std::vector<float> base_heights(const HeightMap& map, const BaseSurface& base, double size_mm, Context& context) {
   std::vector<float> heights(map.height_mm.size());
@@ -88,8 +97,9 @@ std::vector<float> base_heights(const HeightMap& map, const BaseSurface& base, d
       for (int column = 0; column < map.columns; ++column) {
         const double x = x_of(map, column) / size_mm, y = y_of(map, static_cast<int>(row)) / size_mm;
         // On a border a ray would meet the wall's upper edge, whichever band is meant.
+        const BaseBands* const bands = base.bands();
         const std::optional<double> depth =
-            base.bands() != nullptr ? base.bands()->depth(base.bands()->of_point(x, y)) : base.depth_at(x, y);
+            bands != nullptr ? bands->depth(bands->of_point(x, y), bands->across(x, y)) : base.depth_at(x, y);
         heights[row * static_cast<std::size_t>(map.columns) + static_cast<std::size_t>(column)] =
             depth ? static_cast<float>(-size_mm * *depth) : NAN;
       }
@@ -109,8 +119,9 @@ HeightMap envelope_over(const CoveringMesh& mesh, double size_mm, PlateSize plat
   HeightMap map = empty_map(plate, pixel_mm);
   const auto range = space.base.depth_range(0.5 * plate.width_mm / size_mm, 0.5 * plate.height_mm / size_mm);
   const auto [least, largest] = range.value_or(std::pair{0.0, 0.0});
-  map.floor_mm = -size_mm * largest - space.below_mm;
-  map.top_mm = -size_mm * least + space.above_mm;
+  const double along_z = space.base.max_along_z();
+  map.floor_mm = -size_mm * largest - along_z * space.below_mm;
+  map.top_mm = -size_mm * least + along_z * space.above_mm;
   std::ranges::fill(map.height_mm, -INFINITY);
   std::vector<int> band;
   if (mesh.band != nullptr && space.base.bands() != nullptr) band = node_bands(map, *space.base.bands(), size_mm);
@@ -164,17 +175,19 @@ HeightMap make_height_map(const CoveringMesh& mesh, double size_mm, PlateSize pl
     return make_height_map(mesh.V, mesh.F, size_mm, plate, pixel_mm, space.above_mm, context);
   NodeRoom room;
   HeightMap map = envelope_over(mesh, size_mm, plate, pixel_mm, space, room, context);
-  const std::vector<float> base = base_heights(map, space.base, size_mm, context);
+  const std::vector<float> base = base_heights(map, space.base, size_mm, context),
+                           along_z = lengths_along_z(map, space.base, size_mm);
   const auto floor = static_cast<float>(map.floor_mm), above = static_cast<float>(space.above_mm),
              below = static_cast<float>(space.below_mm);
   for (std::size_t i = 0; i < base.size(); ++i) {
+    const float length = along_z.empty() ? 1.0f : along_z[i];
     float& height = map.height_mm[i];
     const bool covered = !std::isinf(height);
     if (std::isnan(base[i])) height = covered ? height : floor;
     else if (!covered) height = base[i];
     else
-      height = std::min(std::max(height, base[i] - (room.below.empty() ? below : room.below[i])),
-                        base[i] + (room.above.empty() ? above : room.above[i]));
+      height = std::min(std::max(height, base[i] - length * (room.below.empty() ? below : room.below[i])),
+                        base[i] + length * (room.above.empty() ? above : room.above[i]));
     height = std::max(height, floor);
   }
   return map;
@@ -184,12 +197,14 @@ HeightMap make_bed_map(const CoveringMesh& mesh, double size_mm, PlateSize plate
                        const AllowedSpace& space, Context& context) {
   NodeRoom room;
   HeightMap map = envelope_over(mesh, size_mm, plate, pixel_mm, space, room, context);
-  const std::vector<float> base = base_heights(map, space.base, size_mm, context);
+  const std::vector<float> base = base_heights(map, space.base, size_mm, context),
+                           along_z = lengths_along_z(map, space.base, size_mm);
   const auto floor = static_cast<float>(map.floor_mm);
   for (std::size_t i = 0; i < base.size(); ++i) {
+    const float length = along_z.empty() ? 1.0f : along_z[i];
     const bool covered = !std::isinf(map.height_mm[i]);
     const float height = std::isnan(base[i]) ? floor : base[i];
-    map.height_mm[i] = std::max(floor, covered ? height - static_cast<float>(space.below_mm) : height);
+    map.height_mm[i] = std::max(floor, covered ? height - length * static_cast<float>(space.below_mm) : height);
   }
   return map;
 }

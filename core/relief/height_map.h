@@ -39,7 +39,8 @@ struct PlateSize {
 HeightMap make_height_map(const Positions& moved, const Triangles& F, double size_mm, PlateSize plate, double pixel_mm,
                           double top_mm, Context& context);
 
-/// Where a relief may be: from `above_mm` before its base to `below_mm` behind it, along the plate's normal.
+/// Where a relief may be: from `above_mm` before its base to `below_mm` behind it, along the plate's normal; on strips
+/// along the normal of the strip.
 struct AllowedSpace {
   const BaseSurface& base;
   double above_mm, below_mm;

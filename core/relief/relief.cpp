@@ -287,7 +287,7 @@ Relief ReliefSolver::solve_within(const ReliefOptions& options, const DepthBound
   if (options.appearance == Appearance::balanced && borders != nullptr)
     throw Error(
         ErrorCode::invalid_input, "appearance",
-        "On a base in steps the relief is made with the appearance \"detail\" only: choose it, or another base.");
+        "On a base in steps or strips the relief is made with the appearance \"detail\" only: choose it, or another base.");
   // On a plate lent, not copied: at 300k vertices the rows are tens of megabytes.
   const bool lent = bounds.even;
   struct Lent {

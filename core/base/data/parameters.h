@@ -69,7 +69,7 @@ struct Parameter {
   double slider_minimum = 0, slider_maximum = 0;
   std::string_view old_name_ = "";
   std::string_view only_with_ = "";
-  std::array<std::string_view, 4> only_with_choices_{};
+  std::array<std::string_view, 5> only_with_choices_{};
 
   constexpr Parameter advanced() const {
     Parameter copy = *this;
@@ -87,7 +87,7 @@ struct Parameter {
     copy.old_name_ = old_name;
     return copy;
   }
-  /// It counts only while another parameter, a choice, has one of these values, at most four; else controls hide it. It
+  /// It counts only while another parameter, a choice, has one of these values, at most five; else controls hide it. It
   /// is valid all the same.
   template <class... Choices>
   constexpr Parameter only_with(std::string_view choice, Choices... values) const {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/format.h"
+#include "relief/base/base_strips.h"
 
 namespace formwright {
 namespace {
@@ -111,9 +112,22 @@ Profile stairs(const BaseBands& bands, double reach) {
   return p;
 }
 
+/// The outer strips go on beyond their ends.
+Profile strips(const BaseStrips& strips, double reach) {
+  Profile p;
+  const auto at = [&](double t, int band) { p.add(t, strips.bands.depth(band, t)); };
+  const int last = strips.bands.count() - 1;
+  if (-reach < strips.t.front()) at(-reach, 0);
+  for (std::size_t k = 0; k < strips.t.size(); ++k) p.add(strips.t[k], strips.z[k]);
+  if (reach > strips.t.back()) at(reach, last);
+  return p;
+}
+
 }  // namespace
 
 std::optional<BaseBands> base_bands(const ReliefOptions& options, const ViewFrame& frame) {
+  if (options.base == BaseShape::strips)
+    return base_strips(options, frame, extent_of(options, frame).half_across, turn_of(options)).bands;
   if (options.base != BaseShape::stairs) return std::nullopt;
   const Extent extent = extent_of(options, frame);
   std::vector<double> depth, border;
@@ -141,6 +155,11 @@ TriangleMesh base_shape(const ReliefOptions& options, const ViewFrame& frame) {
                     "The waves are too short for this width: make them at least " +
                         with_decimals(2 * reach * size / max_waves + 0.05, 1) + " mm long.");
       return swept(wave(depth, reach, pitch), reach, turn_of(options));
+    case BaseShape::strips: {
+      const BaseStrips folded = base_strips(options, frame, half_across, turn_of(options));
+      const double spread = 1 + frame.kappa * *std::ranges::max_element(folded.z);
+      return swept(strips(folded, reach * spread), reach * spread, turn_of(options));
+    }
     case BaseShape::stairs: return swept(stairs(*base_bands(options, frame), reach), reach, turn_of(options));
     default: return swept(groove(depth, reach, pitch), reach, turn_of(options));
   }

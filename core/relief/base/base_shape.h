@@ -15,10 +15,10 @@ namespace formwright {
 /// the plate, so that few long triangles have them: exactly where they are flat, else within 1e-5 of their
 /// depth.
 /// `options.base` must not be `flat`. Throws Error{invalid_input}: a cylinder deeper than half its width; waves
-/// too short for their number.
+/// too short for their number; see base_strips.
 TriangleMesh base_shape(const ReliefOptions& options, const ViewFrame& frame);
 
-/// The steps of that shape; nothing where it has none.
+/// The steps or strips of that shape; nothing where it has none. Throws as base_strips.
 std::optional<BaseBands> base_bands(const ReliefOptions& options, const ViewFrame& frame);
 
 /// A mesh from a file, in millimetres with x right, y up and z towards the viewer, the middle of the plate's front

@@ -30,10 +30,16 @@ BaseSurface::BaseSurface(const TriangleMesh& mesh, std::optional<BaseBands> band
   far_ = 4 * (mesh.V.rowwise().norm().maxCoeff() + 1) - front_;
 }
 
+double BaseSurface::max_along_z() const {
+  double longest = 1;
+  for (int band = 0; bands_ && band < bands_->count(); ++band) longest = std::max(longest, bands_->along_z(band));
+  return longest;
+}
+
 std::optional<double> BaseSurface::depth_on_ray(const ViewFrame& frame, Eigen::Index vertex, double shift) const {
   if (is_flat()) return shift;
   const Vec3 p = frame.P.row(vertex).transpose();
-  if (bands_) return bands_->depth(bands_->of_ray(frame, p)) + shift;
+  if (bands_) return bands_->depth_on_ray(frame, bands_->of_ray(frame, p), p, shift);
   if (frame.kappa == 0) {
     const std::optional<double> depth = depth_at(p.x(), p.y());
     if (!depth) return std::nullopt;

@@ -16,17 +16,21 @@ class BaseSurface {
  public:
   BaseSurface() = default;
   /// `mesh`: at least one triangle, open or closed; of what lies behind each other the foremost counts.
-  /// `bands`: of a base in steps, whose planes and the walls between them the mesh has.
+  /// `bands`: of a base in steps or strips, whose planes and the walls between them the mesh has.
   explicit BaseSurface(const TriangleMesh& mesh, std::optional<BaseBands> bands = std::nullopt);
 
   bool is_flat() const { return caster_ == nullptr; }
-  /// Null where it has no steps.
+  /// Null where it has neither steps nor strips.
   const BaseBands* bands() const { return bands_ ? &*bands_ : nullptr; }
 
+  /// The largest length along z of one unit of length along the base's normal where thickness is counted along it: on
+  /// strips. Else 1.
+  double max_along_z() const;
+
   /// Depth z at which the ray from the viewpoint through a vertex of the model first meets the base, moved by `shift`
-  /// along z. On steps, the depth of the step whose group the ray belongs to,
-  /// and `shift`: relief on the walls between them cannot be made. Nothing where it misses. For a base without
-  /// overhangs as seen along z, a larger shift is met later.
+  /// along z. On bands, that of the band whose group the ray belongs to, moved along the band's normal: relief on the
+  /// walls between steps cannot be made. Nothing where it misses. For a base without overhangs as seen along z, a
+  /// larger shift is met later.
   std::optional<double> depth_on_ray(const ViewFrame& frame, Eigen::Index vertex, double shift) const;
 
   /// Depth z of the base at a point of the plate, seen straight on. Nothing beyond its edge.

@@ -27,7 +27,7 @@ class GroupBorders {
   virtual std::optional<Vec2> limits(int band, int border, const Vec3& p, bool held) const = 0;
 };
 
-/// Those of a base in steps. What is given must outlive it.
+/// Those of a base in steps or strips. What is given must outlive it.
 class BandBorders : public GroupBorders {
  public:
   BandBorders(const ViewFrame& frame, const BaseBands& bands, const DepthBounds& bounds)
@@ -40,9 +40,10 @@ class BandBorders : public GroupBorders {
   double off(int border, const Vec3& p) const override {
     return bands_.across(p.x(), p.y()) - this->border(border) * (1 + frame_.kappa * p.z());
   }
-  std::optional<Vec2> limits(int band, int, const Vec3&, bool held) const override {
+  std::optional<Vec2> limits(int band, int, const Vec3& p, bool held) const override {
     if (!held) return std::nullopt;
-    return Vec2(bands_.depth(band) - bounds_.above, bands_.depth(band) + bounds_.below);
+    return Vec2(bands_.depth_on_ray(frame_, band, p, -bounds_.above),
+                bands_.depth_on_ray(frame_, band, p, bounds_.below));
   }
 
  private:

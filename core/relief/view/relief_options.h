@@ -24,11 +24,19 @@ struct EnumNames<BoundedVertices> {
   static constexpr std::array<std::string_view, 2> labels{"Flat", "May sink"};
 };
 
-enum class BaseShape { flat, cylinder, wave, groove, stairs };
+enum class BaseShape { flat, cylinder, wave, groove, stairs, strips };
 template <>
 struct EnumNames<BaseShape> {
-  static constexpr std::array<std::string_view, 5> names{"flat", "cylinder", "wave", "groove", "stairs"};
-  static constexpr std::array<std::string_view, 5> labels{"Flat", "Cylinder", "Waves", "V groove", "Stairs"};
+  static constexpr std::array<std::string_view, 6> names{"flat", "cylinder", "wave", "groove", "stairs", "strips"};
+  static constexpr std::array<std::string_view, 6> labels{"Flat", "Cylinder", "Waves", "V groove", "Stairs", "Strips"};
+};
+
+/// How strips follow each other.
+enum class BaseBend { bay, zigzag };
+template <>
+struct EnumNames<BaseBend> {
+  static constexpr std::array<std::string_view, 2> names{"bay", "zigzag"};
+  static constexpr std::array<std::string_view, 2> labels{"Bay", "Zigzag"};
 };
 
 enum class BaseMisses { refused, free };
@@ -79,6 +87,8 @@ struct ReliefOptions {
   double base_depth_mm = 10;
   std::optional<double> base_pitch_mm;
   int base_steps = 5;
+  double base_fold_deg = 22.5;
+  BaseBend base_bend = BaseBend::bay;
   double base_turn_deg = 0;
   double carve_depth_mm = 0;
   BaseMisses base_misses = BaseMisses::refused;
@@ -133,16 +143,28 @@ struct ReliefOptions {
           .group("Base")
           .only_with("base", "wave", "groove")
           .slider(10, 400),
-      parameter("base_steps", &ReliefOptions::base_steps, "Steps", unit::none, 2, 40,
-                "Number of steps, all of the same width and height. Each carries a part of the picture.")
+      parameter("base_steps", &ReliefOptions::base_steps, "Steps or strips", unit::none, 2, 40,
+                "Number of steps, all of the same width and height, or of strips, all of the same width. Each carries "
+                "a part of the picture.")
           .group("Base")
-          .only_with("base", "stairs")
+          .only_with("base", "stairs", "strips")
           .slider(2, 12),
+      parameter("base_fold_deg", &ReliefOptions::base_fold_deg, "Angle between strips", unit::degrees, -90, 90,
+                "How far each strip is turned against the one before. Positive: the fold stands out towards the "
+                "viewer. Negative: it goes back.")
+          .group("Base")
+          .only_with("base", "strips")
+          .slider(-45, 45),
+      parameter("base_bend", &ReliefOptions::base_bend, "Bend of the strips",
+                "Bay: all strips turn the same way, as in a bay window. Zigzag: they turn left and right by turns, as "
+                "a folding screen.")
+          .group("Base")
+          .only_with("base", "strips"),
       parameter(
           "base_turn_deg", &ReliefOptions::base_turn_deg, "Turn of the base", unit::degrees, -180, 180,
-          "Turns the base on the plate, counter-clockwise. At 0° waves, groove and cylinder run upwards, and stairs rise upwards, away from the viewer.")
+          "Turns the base on the plate, counter-clockwise. At 0° waves, groove, cylinder and strips run upwards, and stairs rise upwards, away from the viewer.")
           .group("Base")
-          .only_with("base", "cylinder", "wave", "groove", "stairs")
+          .only_with("base", "cylinder", "wave", "groove", "stairs", "strips")
           .slider(-90, 90),
       parameter(
           "base_misses", &ReliefOptions::base_misses, "Where the base ends",

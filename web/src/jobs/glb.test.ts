@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { describe, expect, it } from 'vitest';
-import { parseFilm, parsePrinted, parseSolid } from './glb';
+import { parseFilm, parseNodes, parsePrinted, parseSolid } from './glb';
 
 /** Packs accessors and images as the core does: one buffer, one view each. */
 class Writer {
@@ -135,5 +135,31 @@ describe('a printed sheet', () => {
     expect([...printed.uvs]).toEqual([0.25, 0.75]);
     expect([...printed.picture]).toEqual([1, 2, 3]);
     expect(printed.media_type).toBe('image/png');
+  });
+});
+
+describe('several meshes', () => {
+  it('are read with the names of their nodes, in mm and in the axes of the file', () => {
+    const glb = new Writer();
+    const mesh = (x: number) => ({
+      primitives: [
+        {
+          attributes: { POSITION: glb.array(Float32Array.of(x, 0, 1, x + 1, 0, 1, x, 2, 1), 'VEC3', 3) },
+          indices: glb.array(Uint16Array.of(0, 1, 2), 'SCALAR', 1),
+        },
+      ],
+    });
+    const meshes = [mesh(0), mesh(5)];
+    const node = (name: string, number: number) => ({ name, mesh: number, scale: [0.001, 0.001, 0.001] });
+    const bytes = glb.file({
+      scene: 0,
+      scenes: [{ nodes: [0, 1] }],
+      nodes: [node('Piece 1', 0), node('Piece 2', 1)],
+      meshes,
+    });
+    const [first, second] = parseNodes(bytes);
+    expect([first?.name, second?.name]).toEqual(['Piece 1', 'Piece 2']);
+    expect([...(second?.positions ?? [])]).toEqual([5, 0, 1, 6, 0, 1, 5, 2, 1]);
+    expect([...(second?.indices ?? [])]).toEqual([0, 1, 2]);
   });
 });

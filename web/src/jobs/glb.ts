@@ -21,6 +21,11 @@ export interface Solid {
   readonly indices: Uint32Array<ArrayBuffer>;
 }
 
+/** One of several meshes, in the axes of the file: mm, y up, z towards the viewer. */
+export interface NamedSolid extends Solid {
+  readonly name: string;
+}
+
 /** A mesh with its picture. */
 export interface Printed extends Solid {
   /** u, v per vertex, origin at the picture's lower left. */
@@ -187,6 +192,23 @@ const firstPrimitive = (glb: Glb): JsonObject => object(list(glb.at('meshes', 0)
 export function parseSolid(bytes: Uint8Array<ArrayBuffer>): Solid {
   const glb = new Glb(bytes);
   return solidOf(glb, firstPrimitive(glb));
+}
+
+/** Every mesh that a root of the scene shows. Throws Error with one sentence. */
+export function parseNodes(bytes: Uint8Array<ArrayBuffer>): NamedSolid[] {
+  const glb = new Glb(bytes);
+  return list(glb.at('scenes', glb.json['scene'] ?? 0)['nodes']).map((root) => {
+    const node = glb.at('nodes', root);
+    const primitive = object(list(glb.at('meshes', node['mesh'])['primitives'])[0]);
+    const [scale = 1] = numbers(node['scale']);
+    return {
+      name: String(node['name'] ?? ''),
+      positions: glb
+        .floats(object(primitive['attributes'])['POSITION'])
+        .map((metres) => 1000 * scale * metres),
+      indices: glb.integers(primitive['indices']),
+    };
+  });
 }
 
 /** The first mesh with its base colour picture. Throws Error with one sentence. */

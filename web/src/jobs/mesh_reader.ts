@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The page's side of `mesh_worker`: meshes without a long task on the main thread.
 import { JobError } from './contract';
-import type { Film, Printed, Solid } from './glb';
+import type { Film, NamedSolid, Printed, Solid } from './glb';
 import type { PlyMesh } from './ply';
 
 interface Kinds {
@@ -9,6 +9,7 @@ interface Kinds {
   film: Film;
   printed: Printed;
   solid: Solid;
+  nodes: NamedSolid[];
   polylines: Float32Array<ArrayBuffer>[];
 }
 
@@ -49,4 +50,5 @@ export const readPly = (bytes: Uint8Array<ArrayBuffer>) => read('ply', bytes);
 export const readFilm = (bytes: Uint8Array<ArrayBuffer>) => read('film', bytes);
 export const readPrinted = (bytes: Uint8Array<ArrayBuffer>) => read('printed', bytes);
 export const readSolid = (bytes: Uint8Array<ArrayBuffer>) => read('solid', bytes);
+export const readNodes = (bytes: Uint8Array<ArrayBuffer>) => read('nodes', bytes);
 export const readPolylines = (bytes: Uint8Array<ArrayBuffer>) => read('polylines', bytes);

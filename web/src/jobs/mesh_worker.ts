@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Reads meshes off the main thread.
-import { parseFilm, parsePrinted, parseSolid } from './glb';
+import { parseFilm, parseNodes, parsePrinted, parseSolid } from './glb';
 import type { MeshReply, MeshRequest } from './mesh_reader';
 import { parsePly } from './ply';
 import { parsePolylines } from './polylines';
@@ -10,6 +10,7 @@ const readers = {
   film: parseFilm,
   printed: parsePrinted,
   solid: parseSolid,
+  nodes: parseNodes,
   polylines: parsePolylines,
 } as const;
 

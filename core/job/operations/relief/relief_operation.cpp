@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "job/operations/relief/relief_operation.h"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "base/format.h"
 #include "geometry/mesh/adjacency.h"
@@ -11,6 +13,7 @@
 #include "job/contract/operation_options.h"
 #include "job/operations/relief/painting/painted_report.h"
 #include "job/operations/relief/painting/painting_file.h"
+#include "job/operations/relief/pieces/piece_files.h"
 #include "job/operations/relief/relief_base.h"
 #include "job/operations/relief/solved_relief.h"
 #include "relief/height_map.h"
@@ -242,8 +245,18 @@ std::vector<std::string> notes_of(const Relief& relief) {
   return notes;
 }
 
+/// Who asks for all files gets those that there are; who asks for nothing but pieces is told that there are none.
+void check_pieces(const OperationCall& call, const ReliefOptions& options) {
+  if (options.base == BaseShape::stairs || options.base == BaseShape::strips || !wants_pieces(call)) return;
+  for (const OutputInfo& info : relief_outputs())
+    if (call.wants(info.name)) return;
+  throw Error(ErrorCode::invalid_input, "base",
+              "This base is one piece: choose stairs or strips as its shape, or ask for other files.");
+}
+
 OperationResult run_relief(const OperationCall& call, const ReliefOptions& options) {
   Context& context = call.context;
+  check_pieces(call, options);
   const SolvedRelief solved = [&] {
     const auto span = context.span(0, 0.9, "Reading the model");
     return solve_relief(call, options);
@@ -266,7 +279,8 @@ OperationResult run_relief(const OperationCall& call, const ReliefOptions& optio
   const auto base_depth =
       solved.base.depth_range(0.5 * plate.width_mm / options.width_mm, 0.5 * plate.height_mm / options.width_mm)
           .value_or(std::pair{0.0, 0.0});
-  const double range_mm = options.width_mm * (base_depth.second - base_depth.first) + space.above_mm + space.below_mm;
+  const double range_mm = options.width_mm * (base_depth.second - base_depth.first) +
+                          solved.base.max_along_z() * (space.above_mm + space.below_mm);
   if (const Painting& painting = solved.painted.painting; !painting.empty()) {
     report["painted_vertices"] = painted_vertices(painting);
     report["stands_out_max_mm"] = space.above_mm;
@@ -330,6 +344,13 @@ OperationResult run_relief(const OperationCall& call, const ReliefOptions& optio
         if (call.wants(name)) add(name, write_model(solid, *mesh_format_of_extension(name), context));
     }
   }
+  if (wants_pieces(call) && solved.base.bands() != nullptr) {
+    const auto span = context.span(0.9, 1, "Making the pieces");
+    add_piece_files(call,
+                    tiled_relief(frame, *solved.base.bands(), relief.pieces, plate, options,
+                                 solid_tolerance_share * options.thickness_mm, true, context),
+                    *solved.base.bands(), result);
+  }
   report["seconds_read"] = loaded->seconds_read + loaded->seconds_repair;
   report["seconds_setup"] = solved.reused ? 0.0 : solver->seconds_setup();
   report["seconds_solve"] = solved.seconds_solve + (solved.reused ? 0.0 : solver->seconds_factorise());
@@ -351,7 +372,9 @@ Operation relief_operation() {
   operation.summary = "Turns a model into a thin relief that still looks deep from the viewpoint you choose.";
   operation.inputs = {model_input_info(), base_input_info(), painting_input_info(), painted_mesh_input_info()};
   operation.outputs = relief_outputs();
+  std::ranges::move(piece_outputs(), std::back_inserter(operation.outputs));
   operation.report = relief_report_fields();
+  std::ranges::move(piece_report_fields(), std::back_inserter(operation.report));
   take_options<ReliefOptions>(operation, run_relief);
   return operation;
 }

@@ -232,10 +232,14 @@ function ExportButton({ session, result, onSendToMill }: ExportProps) {
             null,
             ...[...files, ...all.filter((output) => output.name === 'relief.ply')].map((output) => {
               const kept = result.outputs[output.name];
+              const ofPieces = /^(pieces|placement)\./.test(output.name);
               return {
                 label: output.name === 'relief.ply' ? `${output.label}, for measuring` : output.label,
                 hint: kept ? formatBytes(kept.bytes) : undefined,
-                disabledReason: busy,
+                disabledReason:
+                  ofPieces && !session.pieces.possible.value
+                    ? 'Only a base of stairs or strips has pieces'
+                    : busy,
                 onSelect: () => void save(output),
               };
             }),

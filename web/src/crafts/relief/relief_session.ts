@@ -19,6 +19,7 @@ import type { Viewpoint } from '../../view';
 import { ForestSession } from './forest/forest_session';
 import { ModelGroup } from './group/model_group';
 import { ReliefLight } from './light/relief_light';
+import { ReliefPieces } from './pieces/relief_pieces';
 import { baseOf, parametersOf } from './meshes';
 import { PaintSession } from './paint/paint_session';
 import { paintingInputs } from './paint/painting';
@@ -67,6 +68,7 @@ export class ReliefSession extends RoomSession<ReliefDocument> {
   readonly shown = this.previews.shown;
   readonly light = new ReliefLight(this);
   readonly paint = new PaintSession(this);
+  readonly pieces = new ReliefPieces(this);
   readonly #previewed = signal<Measured | null>(null);
   readonly #previewMemory_mb = signal(0);
 
@@ -80,6 +82,7 @@ export class ReliefSession extends RoomSession<ReliefDocument> {
     this.previews.startFollowing();
     this.light.startFollowing();
     this.paint.startFollowing();
+    this.pieces.startFollowing();
   }
 
   openFiles(files: readonly File[]): Promise<boolean> {

@@ -18,10 +18,13 @@ import { brushPointer, keepPainted } from './paint/paint_scene';
 import { PaintTool } from './paint/paint_tool';
 import { brightnessMapping } from './light/light_values';
 import { errorMapping, errorOf, litData, plateOf, reliefData, viewpointOf } from './meshes';
+import { placed } from './pieces/piece_meshes';
+import { PiecesBar } from './pieces/pieces_bar';
+import type { MadePieces } from './pieces/relief_pieces';
 import type { ReliefSession } from './relief_session';
 import type { LitRelief, Shown } from './shown';
 
-type ReliefMode = ViewMode | 'light';
+type ReliefMode = ViewMode | 'light' | 'pieces';
 
 /** The viewport's own state outlives a visit to another page. */
 export const mode = signal<ReliefMode>('swipe');
@@ -44,6 +47,7 @@ const modes: readonly { value: ReliefMode; label: string; short?: string }[] = [
   { value: 'original', label: 'Original' },
   { value: 'error', label: 'Shading difference' },
   { value: 'light', label: 'In real light', short: 'Light' },
+  { value: 'pieces', label: 'In pieces', short: 'Pieces' },
 ];
 
 export interface ViewportPanelProps {
@@ -105,6 +109,8 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
       effect(() => {
         const painting = session.paint.open.value;
         session.light.open.value = mode.value === 'light' && !painting;
+        session.pieces.open.value = mode.value === 'pieces' && !painting;
+        if (mode.value === 'pieces' && !session.pieces.possible.value) mode.value = 'relief';
         viewport.setColourMapping(mode.value === 'light' ? brightnessMapping : errorMapping);
         viewport.setMode(painting ? 'original' : drawnMode(mode.value));
       }),
@@ -128,7 +134,7 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
     made.value = viewport;
     return () => {
       made.value = null;
-      session.light.open.value = session.paint.open.value = false;
+      session.light.open.value = session.paint.open.value = session.pieces.open.value = false;
       onViewport(null);
       resize.disconnect();
       for (const end of stop) end();
@@ -139,9 +145,12 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
   }, []);
 
   const shown = session.shown.value;
-  const options = modes.map(({ value, label, short }) => ({
+  const offered = modes.filter(({ value }) => value !== 'pieces' || session.pieces.possible.value);
+  // Six views fit beside each other on a phone with shorter names only.
+  const crowded = offered.length === modes.length;
+  const options = offered.map(({ value, label, short }) => ({
     value,
-    label: isNarrow.value ? (short ?? label) : label,
+    label: isNarrow.value ? (short ?? (crowded ? label.replace(' difference', '') : label)) : label,
     disabledReason:
       shown === null && value !== 'original' ? 'Available when the first preview is ready' : undefined,
   }));
@@ -173,6 +182,7 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
             mean={figure(shown.report, 'normal_error_mean_deg') ?? undefined}
           />
         ) : null}
+        {mode.value === 'pieces' ? <PiecesBar pieces={session.pieces} /> : null}
         {session.previews.running.value && session.model.original.value && shown === null ? (
           <p class="label-chip">
             <Icon name="clock" small /> Making the first preview
@@ -195,8 +205,9 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
 const areModelsShown = ({ group, paint }: ReliefSession): boolean =>
   group.models.value !== null && mode.value === 'original' && !paint.open.value;
 
-/** Light is drawn as values on the relief. */
-const drawnMode = (chosen: ReliefMode): ViewMode => (chosen === 'light' ? 'error' : chosen);
+/** Light is drawn as values on the relief, pieces in its place. */
+const drawnMode = (chosen: ReliefMode): ViewMode =>
+  chosen === 'light' ? 'error' : chosen === 'pieces' ? 'relief' : chosen;
 
 /** What floats stays off the object: light and side view right, notes and legends below, paint left. */
 function freeRectangle(foot: Element | null, painting: boolean): Insets {
@@ -240,9 +251,14 @@ function keepDrawn(
     // The light on the relief before stays until the new one is cast.
     const found = mode.value === 'light' ? session.light.lit.value : null;
     const lit = found?.of.from === shown.from ? found : null;
-    if (drawnRelief === (lit ?? shown)) return;
+    const made = mode.value === 'pieces' ? session.pieces.made.value : null;
+    const pieces = made?.of.from === shown.from ? made : null;
+    // Pieces move while they stay the same.
+    if (pieces) drawPieces(viewport, pieces, drawnRelief, session.pieces.apart.value);
+    else viewport.setMarkers([]);
+    if (drawnRelief === (pieces ?? lit ?? shown)) return;
     if (lit) drawLit(viewport, lit, drawnRelief, Number(inForceOf(session, lit.of, 'thickness_mm')));
-    else drawShaded(viewport, shown, drawnRelief, thickness);
+    else if (!pieces) drawShaded(viewport, shown, drawnRelief, thickness);
     const viewpoint = viewpointOf(shown.report, Number(inForceOf(session, shown, 'field_of_view_deg') ?? 20));
     if (viewpoint) {
       const first = drawnModel !== original.from;
@@ -251,13 +267,13 @@ function keepDrawn(
       if (stay) viewport.lookFromViewpoint(false);
       drawnModel = original.from;
     }
-    drawnRelief = lit ?? shown;
+    drawnRelief = pieces ?? lit ?? shown;
     onRelief(thickness);
   };
   return effect(draw);
 }
 
-type Drawn = Shown | LitRelief | null;
+type Drawn = Shown | LitRelief | MadePieces | null;
 
 function drawShaded(viewport: Viewport, shown: Shown, before: Drawn, thickness_mm: number): void {
   const plate: Plate | null = plateOf(shown.report, thickness_mm, shown.base);
@@ -285,6 +301,15 @@ function drawLit(viewport: Viewport, lit: LitRelief, before: Drawn, thickness_mm
   }
   const plate = plateOf(lit.of.report, thickness_mm);
   viewport.setRelief(litData(lit), plate && { ...plate, mesh: false });
+}
+
+/** They have their plates in themselves. */
+function drawPieces(viewport: Viewport, made: MadePieces, before: Drawn, apart: number): void {
+  const { mesh, markers } = placed(made.pieces, made.report, apart);
+  const plate = plateOf(made.report, 0);
+  if (before === made) viewport.updateRelief(mesh.positions);
+  else viewport.setRelief(mesh, plate && { ...plate, mesh: false });
+  viewport.setMarkers(markers);
 }
 
 function inForceOf(session: ReliefSession, shown: Shown, name: string) {

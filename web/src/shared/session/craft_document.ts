@@ -184,11 +184,8 @@ export class CraftCommands<D extends CraftDocument> extends RoomCommands<D> {
   }
 
   /** The same model, otherwise placed or with more beside it. */
-  changeModel(model: CraftModel, label: string, values: JsonObject = {}) {
-    return this.command({ label }, ({ parameters }) => {
-      const changed: Partial<CraftDocument> = { model, parameters: { ...parameters, ...values } };
-      return changed;
-    });
+  changeModel(model: CraftModel, label: string, also: (craft: D) => Partial<D> = () => ({})) {
+    return this.command({ label }, (craft) => ({ ...craft, ...also(craft), model }));
   }
 }
 

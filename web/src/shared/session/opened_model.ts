@@ -117,11 +117,16 @@ export class OpenedModel<D extends CraftDocument = CraftDocument> {
   }
 
   /** The same model changed: its viewpoint and everything else stay. */
-  async change(source: Source, label: string, signal: AbortSignal, values: JsonObject = {}): Promise<void> {
+  async change(
+    source: Source,
+    label: string,
+    signal: AbortSignal,
+    also: (model: CraftModel) => (craft: D) => Partial<D>,
+  ): Promise<void> {
     const change = this.#room.changesHere();
     const { browser, projects } = this.#room.services;
     const model = await importModel(browser, projects.blobs, source, { signal });
-    change(this.#rules.commands.changeModel(model, label, values));
+    change(this.#rules.commands.changeModel(model, label, also(model)));
     projects.commit();
   }
 

@@ -42,6 +42,25 @@ function groupTitle(models: readonly PlacedModel[]): string {
   return names.length === 2 ? `${first} and ${second}` : `${first}, ${second} and ${names.length - 2} more`;
 }
 
+/** A single model may stand out at its outline; several lie on their base, unless their maker chose otherwise. */
+const lyingOnTheBase = ({ model, parameters }: ReliefDocument): Partial<ReliefDocument> =>
+  model?.source.kind === 'group' || parameters['outline_mm'] !== undefined
+    ? {}
+    : { parameters: { ...parameters, outline_mm: groupOutline_mm } };
+
+/** What was painted stays on models that were only moved: they have the same vertices in the same order. */
+const keptPainting =
+  (models: readonly PlacedModel[]) =>
+  ({ mesh }: CraftModel) =>
+  ({ model, painting }: ReliefDocument): Partial<ReliefDocument> => {
+    const before = model?.source.kind === 'group' ? model.source.models : [];
+    const isMoved =
+      before.length === models.length && models.every(({ source }, i) => source === before[i]?.source);
+    return painting && painting.on === model?.mesh.blob && isMoved
+      ? { painting: { ...painting, on: mesh.blob } }
+      : {};
+  };
+
 const groupOf = (models: readonly PlacedModel[]): GroupSource => ({
   kind: 'group',
   title: groupTitle(models),
@@ -125,7 +144,7 @@ export class ModelGroup {
         ...this.#modelsOf(model),
         { source, name, size_mm: usualSize_mm, turn_deg: [0, 0, 0] as const, at_mm },
       ];
-      await this.#room.model.change(groupOf(models), `Add ${name}`, signal, this.#ownValues(model));
+      await this.#room.model.change(groupOf(models), `Add ${name}`, signal, () => lyingOnTheBase);
       this.chosen.value = models.length - 1;
     });
   }
@@ -146,12 +165,6 @@ export class ModelGroup {
   #modelsOf({ source }: CraftModel): readonly PlacedModel[] {
     if (source.kind === 'group') return source.models;
     return [{ source, name: nameOf(source), size_mm: usualSize_mm, turn_deg: [0, 0, 0], at_mm: [0, 0, 0] }];
-  }
-
-  /** A single model may stand out at its outline; several lie on their base, unless their maker chose otherwise. */
-  #ownValues({ source }: CraftModel): JsonObject {
-    const chosen = this.#room.document.value.parameters['outline_mm'];
-    return source.kind === 'group' || chosen !== undefined ? {} : { outline_mm: groupOutline_mm };
   }
 
   #vector(name: string): Triple {
@@ -202,7 +215,7 @@ export class ModelGroup {
   async #make({ models, label }: Edit, abort: AbortSignal): Promise<void> {
     this.running.value = true;
     try {
-      await this.#room.model.change(groupOf(models), label, abort);
+      await this.#room.model.change(groupOf(models), label, abort, keptPainting(models));
     } catch (thrown) {
       const error = asJobError(thrown);
       if (error.code !== 'cancelled')

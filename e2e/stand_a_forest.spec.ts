@@ -6,7 +6,9 @@ import { ballObj, expect, expectAccessible, fileOf, goToRoom, openPage, strip, t
 
 const plan = (page: Page) => page.getByRole('group', { name: 'Floor plan from above' });
 const pillar = (page: Page, number: number) =>
-  plan(page).getByRole('button', { name: new RegExp(`^Pillar ${number}, `) });
+  plan(page)
+    .getByRole('button', { name: new RegExp(`^Pillar ${number}, `) })
+    .and(page.locator('.pillar'));
 const eye = (page: Page, number: number) =>
   plan(page).getByRole('button', { name: new RegExp(`^Viewpoint ${number}, .* eye at `) });
 const field = (page: Page, name: string) => page.getByRole('textbox', { name, exact: true });

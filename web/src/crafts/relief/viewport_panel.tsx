@@ -158,7 +158,7 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
     <div class="viewport-panel">
       <div ref={container} class="viewport" />
       {session.paint.open.value && drawing.value ? (
-        <PaintTool session={session} viewport={made.value} />
+        <PaintTool session={session} viewport={made.value} free={() => freeRectangle(foot.current, true)} />
       ) : session.model.original.value && drawing.value ? (
         <div class="float top-left relief-views">
           <Segmented

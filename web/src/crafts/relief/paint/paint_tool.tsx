@@ -2,7 +2,7 @@
 // Over the model while it is painted: the kinds of paint, the brush, what is painted, and ways to paint without pointing.
 import { useEffect } from 'preact/hooks';
 import { Button, Icon, IconButton, Menu, Parameter } from '../../../ui';
-import type { Viewport } from '../../../view';
+import type { Insets, Viewport } from '../../../view';
 import type { ReliefSession } from '../relief_session';
 import { kindColours } from './paint_scene';
 import type { Fill } from './paint_session';
@@ -14,6 +14,8 @@ import './paint.css';
 interface ToolProps {
   readonly session: ReliefSession;
   readonly viewport: Viewport | null;
+  /** What the view leaves free of floating panels. */
+  readonly free: () => Insets;
 }
 
 const kindHelp: Readonly<Record<PaintKind, string>> = {
@@ -34,21 +36,27 @@ const fills: readonly { readonly what: Fill; readonly label: string }[] = [
   { what: 'all', label: 'The whole model' },
 ];
 
-export function PaintTool({ session, viewport }: ToolProps) {
+export function PaintTool({ session, viewport, free }: ToolProps) {
   const { paint } = session;
   useEffect(() => {
     // The first question about what lies under the pointer is answered once a search tree is there: it is asked now.
     viewport?.pick(0, 0);
   }, [viewport]);
   if (viewport === null) return null;
-  const middle = () => {
+  /** Of what floating panels leave free. The search tree that answers may still be on its way. */
+  const middle = async () => {
     const { clientWidth, clientHeight } = viewport.overlay;
-    return viewport.pick(clientWidth / 2, clientHeight / 2);
+    const { left, top, right, bottom } = free();
+    const at = [(left + clientWidth - right) / 2, (top + clientHeight - bottom) / 2] as const;
+    const hit = viewport.pick(...at);
+    if (hit) return hit;
+    await viewport.settled();
+    return viewport.pick(...at);
   };
-  const dabInTheMiddle = () => {
-    const hit = middle();
+  const dabInTheMiddle = async () => {
+    const hit = await middle();
     if (hit) paint.dab(hit);
-    void paint.endStroke();
+    await paint.endStroke();
   };
   return (
     <div class="float top-left paint-tool" role="group" aria-label="Paint the model">
@@ -68,7 +76,7 @@ export function PaintTool({ session, viewport }: ToolProps) {
             title="Paints without pointing"
             items={fills.map(({ what, label }) => ({
               label,
-              onSelect: () => void paint.fill(what, middle()),
+              onSelect: () => void middle().then((hit) => paint.fill(what, hit)),
             }))}
           >
             Fill <Icon name="chevronDown" small />
@@ -77,7 +85,7 @@ export function PaintTool({ session, viewport }: ToolProps) {
             size="small"
             icon="plus"
             title="One dab of the brush where the middle of the view is; arrow keys turn the model"
-            onClick={dabInTheMiddle}
+            onClick={() => void dabInTheMiddle()}
           >
             Dab in the middle
           </Button>

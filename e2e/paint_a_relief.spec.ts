@@ -56,6 +56,7 @@ test('what is painted stands out, is undone, and survives a reload', async ({ pa
   await expect(tool(page)).toBeHidden();
   await expect(strip(page, 'Preview up to date')).toBeVisible();
 
+  await expect(page.getByText('Saved', { exact: true })).toBeVisible();
   await page.reload();
   await expect(painted(page)).toHaveText('Painted: Own thickness.');
   await solve(page);

@@ -49,8 +49,7 @@ DepthBounds depth_bounds(const ViewFrame& frame, const Visibility& visibility, c
   bounds.even = base.is_flat() && !tied && !painted;
   // What is painted goes before the outline.
   const auto is_tied = [&](std::size_t i) {
-    return tied && visibility.outline[i] &&
-           painting.region_of(static_cast<Eigen::Index>(i)) == PaintedRegion::usual;
+    return tied && visibility.outline[i] && painting.region_of(static_cast<Eigen::Index>(i)) == PaintedRegion::usual;
   };
   // Depths before and behind the base, of one vertex.
   const auto above = [&](std::size_t i) {

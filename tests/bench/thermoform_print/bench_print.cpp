@@ -36,7 +36,8 @@ int main(int argc, char** argv) {
       const double whole = watch.lap();
       const Bytes png = write_png(with_marks(print.picture, print.grid, options), print.grid.per_metre, context);
       const double seconds_png = watch.lap();
-      const Bytes pdf = write_print_pdf(print.picture, print.grid, page_layout(options), options, "Thermoforming print", context);
+      const Bytes pdf =
+          write_print_pdf(print.picture, print.grid, page_layout(options), options, "Thermoforming print", context);
       const double seconds_pdf = watch.lap();
       const Bytes glb = formed_picture(sheet, print, 2048, context);
       const double seconds_glb = watch.lap();

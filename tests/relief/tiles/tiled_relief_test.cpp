@@ -193,7 +193,8 @@ TEST_CASE("TiledRelief.OneBandIsThePlate") {
   ReliefSolver solver(test::icosphere(4), options, context);
   const BaseBands one({0.0}, {}, 0);
   const Relief relief = solver.solve(options, context);
-  ReliefPieces all{relief.moved, solver.F(), std::vector<int>(static_cast<std::size_t>(solver.F().rows()), 0), {}, {}, {}};
+  ReliefPieces all{relief.moved, solver.F(), std::vector<int>(static_cast<std::size_t>(solver.F().rows()), 0),
+                   {},           {},         {}};
   const PlateSize plate{108, solver.frame().image_height * 100 + 8};
   const auto pieces = tiled_relief(solver.frame(), one, all, plate, options, 1e-9, false, context);
   REQUIRE(pieces.size() == 1);

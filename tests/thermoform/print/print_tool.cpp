@@ -39,7 +39,8 @@ int main(int argc, char** argv) {
   const PageLayout layout = page_layout(options);
   save(folder + "/print.png",
        write_png(with_marks(print.picture, print.grid, options), sent_per_metre(print.grid, options), context));
-  save(folder + "/print.pdf", write_print_pdf(print.picture, print.grid, layout, options, "Thermoforming print", context));
+  save(folder + "/print.pdf",
+       write_print_pdf(print.picture, print.grid, layout, options, "Thermoforming print", context));
   save(folder + "/formed.glb", formed_picture(sheet, print, 512, context));
   Image picture = print.picture;
   if (options.mirror) mirror_left_right(picture);

@@ -201,7 +201,8 @@ OperationResult run_texture(const OperationCall& call, const Json& given) {
     add("print.png",
         write_png(with_marks(print.picture, print.grid, options), sent_per_metre(print.grid, options), context));
   context.progress(0.9);
-  if (call.wants("print.pdf")) add("print.pdf", write_print_pdf(print.picture, print.grid, layout, options, "Thermoforming print", context));
+  if (call.wants("print.pdf"))
+    add("print.pdf", write_print_pdf(print.picture, print.grid, layout, options, "Thermoforming print", context));
   context.progress(0.95);
   if (call.wants("formed.glb")) add("formed.glb", formed_picture(*formed.sheet, print, formed_texture_px, context));
   if (call.wants("coverage.ply")) add("coverage.ply", coverage_ply(print, context));

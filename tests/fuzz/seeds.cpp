@@ -160,6 +160,10 @@ void add_other_seeds() {
   save(
       "model_scene", "two",
       R"({"models":[{"sample":"cat","vertices":2000,"name":"Cat","size_mm":80,"turn_deg":[0,30,-5],"at_mm":[1.5,40,-20]},{"model":2}]})");
+  save(
+      "painting", "runs",
+      R"({"vertices":12,"weight":[[0,3,4],[5,2,0.5]],"region":[[0,4,"on_base"],[4,2,3]],"thickness_mm":[[4,2,8]],"carve_depth_mm":[[4,2,-1]]})");
+  save("painting", "lists", R"({"vertices":12,"weight":[1,1,1,2,1,1,1,1,1,1,1,1],"region":[0,0,1,0,0,2,0,0,0,0,0,0]})");
   save("png16", "red", test::red_pixel_png());
   save(
       "machine", "grbl",

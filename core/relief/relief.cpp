@@ -203,12 +203,13 @@ ReliefSolver::ReliefSolver(const TriangleMesh& mesh, const ReliefOptions& option
   }
   Stopwatch watch;
   context.progress(0, "Finding the visible surface");
-  std::vector<int> component = vertex_components(Adjacency(mesh)).of;
+  const Adjacency adjacency(mesh);
+  std::vector<int> component = vertex_components(adjacency).of;
   frame_ = make_view_frame(mesh, options);
   {
     const RayCaster caster(TriangleMesh{frame_.P, F_});
     visibility_ = find_visibility(frame_, F_, caster, context);
-    visibility_.outline = find_outline(frame_, F_, component, caster, context);
+    visibility_.outline = find_outline(frame_, F_, adjacency, component, caster, context);
     if (options.depth_order) order_rows_ = depth_order_rows(frame_, F_, caster, context);
   }
   if (visibility_.visible_vertices == 0)

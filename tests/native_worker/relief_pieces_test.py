@@ -170,8 +170,9 @@ class ReliefPieces(unittest.TestCase):
                 around = [of_surface.get((column + x, row + y)) for x in (-1, 0, 1) for y in (-1, 0, 1)]
                 return None in around or max(around) - min(around) > 0.6
 
-            self.assertEqual([pixel for pixel in differing if not jumps(*pixel)], [])
-            self.assertLess(len(differing), 0.1 * len(of_surface))
+            at_jumps = {pixel for pixel in of_surface if jumps(*pixel)}
+            self.assertEqual(differing - at_jumps, set())
+            self.assertLess(len(differing), 0.2 * len(at_jumps))
 
     def test_the_plan_is_at_true_scale(self):
         self.made(*STAIRS)

@@ -30,7 +30,8 @@ Outlined outlined(const TriangleMesh& mesh, ReliefOptions options, Projection pr
   Outlined result{make_view_frame(mesh, options), {}};
   Context context;
   const RayCaster caster(TriangleMesh{result.frame.P, mesh.F});
-  result.outline = find_outline(result.frame, mesh.F, vertex_components(Adjacency(mesh)).of, caster, context);
+  const Adjacency adjacency(mesh);
+  result.outline = find_outline(result.frame, mesh.F, adjacency, vertex_components(adjacency).of, caster, context);
   return result;
 }
 

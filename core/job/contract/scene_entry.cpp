@@ -123,6 +123,12 @@ void write_model_source(const SceneModelSource& source, Json& entry) {
   if (source.sample_vertices > 0) entry["vertices"] = source.sample_vertices;
 }
 
+InputInfo scene_input_info(std::string help) {
+  InputInfo info{scene_input, "Scene", std::move(help), {"json"}};
+  info.required = false;
+  return info;
+}
+
 InputInfo scene_models_info() {
   InputInfo info = model_input_info();
   info.name = scene_model_input;

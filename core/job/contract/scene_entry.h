@@ -75,6 +75,10 @@ inline std::array<double, 3> array_of(const Vec3& v) { return {v.x(), v.y(), v.z
 
 inline constexpr const char* scene_model_input = "model";
 
+inline constexpr const char* scene_input = "scene";
+
+/// Declaration of the optional input "scene".
+InputInfo scene_input_info(std::string help);
 /// Declaration of the input "model", which may be given several times.
 InputInfo scene_models_info();
 /// "model", "model_2", ...

@@ -2,7 +2,6 @@
 #include "relief/view/outline.h"
 
 #include "base/parallel.h"
-#include "geometry/mesh/adjacency.h"
 #include "relief/view/sight.h"
 #include "relief/view/visibility.h"
 
@@ -12,8 +11,7 @@ namespace {
 constexpr std::size_t contour_vertices_a_chunk = 256;
 
 /// Vertices of edges between a face that is turned to the viewer and one that is not, or nothing.
-std::vector<int> contour_vertices(const ViewFrame& frame, const Triangles& F) {
-  const Adjacency adjacency(TriangleMesh{frame.P, F});
+std::vector<int> contour_vertices(const ViewFrame& frame, const Triangles& F, const Adjacency& adjacency) {
   std::vector<char> towards(static_cast<std::size_t>(F.rows())), marked(static_cast<std::size_t>(frame.P.rows()), 0);
   for (Eigen::Index f = 0; f < F.rows(); ++f) towards[static_cast<std::size_t>(f)] = faces_viewer(frame, frame.P, F, f);
   for (int h = 0; h < 3 * adjacency.face_count(); ++h) {
@@ -30,9 +28,9 @@ std::vector<int> contour_vertices(const ViewFrame& frame, const Triangles& F) {
 
 }  // namespace
 
-std::vector<char> find_outline(const ViewFrame& frame, const Triangles& F, const std::vector<int>& component,
-                               const RayCaster& caster, Context& context) {
-  const std::vector<int> contour = contour_vertices(frame, F);
+std::vector<char> find_outline(const ViewFrame& frame, const Triangles& F, const Adjacency& adjacency,
+                               const std::vector<int>& component, const RayCaster& caster, Context& context) {
+  const std::vector<int> contour = contour_vertices(frame, F, adjacency);
   const Sight sight(frame);
   std::vector<char> outline(static_cast<std::size_t>(frame.P.rows()), 0);
   parallel_for(contour.size(), contour_vertices_a_chunk, [&](std::size_t begin, std::size_t end) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "base/context.h"
+#include "geometry/mesh/adjacency.h"
 #include "geometry/queries/ray_caster.h"
 #include "relief/view/view_frame.h"
 
@@ -13,8 +14,10 @@ namespace formwright {
 /// that is turned to the viewer, or none on the other, and the vertex's ray meets its part nowhere else. What other
 /// parts hide or show does not count.
 /// @param component  n, the connected part of each vertex
+/// @param adjacency  of F
 /// @param caster     holds the mesh (frame.P, F)
-std::vector<char> find_outline(const ViewFrame& frame, const Triangles& F, const std::vector<int>& component,
-                               const RayCaster& caster, Context& context);
+/// Throws Error: cancelled.
+std::vector<char> find_outline(const ViewFrame& frame, const Triangles& F, const Adjacency& adjacency,
+                               const std::vector<int>& component, const RayCaster& caster, Context& context);
 
 }  // namespace formwright

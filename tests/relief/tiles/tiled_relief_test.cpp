@@ -164,7 +164,7 @@ TEST_CASE("TiledRelief.VolumesConvergeWithThePixels") {
     const double finest = volumes.back(), coarse = std::abs(volumes[0] - finest), fine = std::abs(volumes[3] - finest);
     INFO("base " << static_cast<int>(base) << ": errors " << coarse << " and " << fine);
     // At least order 1 from 2 mm to 0.25 mm: the silhouette is a step, the rest is smooth.
-    CHECK(fine < coarse / 8 * 1.5);
+    CHECK(fine < coarse / 8);
     CHECK(fine < 1e-3 * finest);
   }
 }

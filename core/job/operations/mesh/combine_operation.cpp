@@ -11,7 +11,6 @@
 namespace formwright {
 namespace {
 
-constexpr const char* placed_models_file = "scene";
 constexpr double max_faces_together = 20e6;
 
 struct CombineOptions {
@@ -20,14 +19,10 @@ struct CombineOptions {
 };
 
 std::vector<InputInfo> combine_inputs() {
-  InputInfo scene;
-  scene.name = placed_models_file;
-  scene.label = "Scene";
-  scene.help =
-      "Models with their places as JSON, such as the scene.json of an earlier run. Without one, the given models stand side by side; without models, a family of a sample is made.";
-  scene.extensions = {"json"};
-  scene.required = false;
-  return {scene, scene_models_info()};
+  return {
+      scene_input_info(
+          "Models with their places as JSON, such as the scene.json of an earlier run. Without one, the given models stand side by side; without models, a family of a sample is made."),
+      scene_models_info()};
 }
 
 std::vector<OutputInfo> combine_outputs() {
@@ -38,7 +33,7 @@ std::vector<OutputInfo> combine_outputs() {
 }
 
 std::vector<PlacedModel> models_of(const OperationCall& call, const CombineOptions& options) {
-  if (const auto scene = call.inputs.find(placed_models_file); scene != call.inputs.end())
+  if (const auto scene = call.inputs.find(scene_input); scene != call.inputs.end())
     return read_model_scene(*scene->second.bytes);
   int count = 0;
   while (call.inputs.contains(scene_model_name(count + 1))) ++count;

@@ -245,7 +245,8 @@ std::vector<std::string> notes_of(const Relief& relief) {
   return notes;
 }
 
-/// Who asks for all files gets those that there are; who asks for nothing but pieces is told that there are none.
+/// A job that asks for all files gets those that there are. One that asks for nothing but pieces is refused where there
+/// are none.
 void check_pieces(const OperationCall& call, const ReliefOptions& options) {
   if (options.base == BaseShape::stairs || options.base == BaseShape::strips || !wants_pieces(call)) return;
   for (const OutputInfo& info : relief_outputs())

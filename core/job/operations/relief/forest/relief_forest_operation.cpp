@@ -18,18 +18,13 @@
 namespace formwright {
 namespace {
 
-constexpr const char* scene_file = "scene";
 constexpr double low_share = 0.9;  // of a model that is seen, below which a note says so
 
 std::vector<InputInfo> forest_inputs() {
-  InputInfo scene;
-  scene.name = scene_file;
-  scene.label = "Scene";
-  scene.help =
-      "Viewpoints and pillars as JSON, such as the scene.json of an earlier run. Without one, four samples are seen from four sides.";
-  scene.extensions = {"json"};
-  scene.required = false;
-  return {scene, scene_models_info()};
+  return {
+      scene_input_info(
+          "Viewpoints and pillars as JSON, such as the scene.json of an earlier run. Without one, four samples are seen from four sides."),
+      scene_models_info()};
 }
 
 std::vector<OutputInfo> forest_outputs() {
@@ -88,7 +83,7 @@ struct ForestInput {
 
 ForestInput read_forest(const OperationCall& call, const ForestOptions& options) {
   ForestInput input;
-  const auto scene = call.inputs.find(scene_file);
+  const auto scene = call.inputs.find(scene_input);
   input.file = scene == call.inputs.end() ? sample_forest_scene(options.scene_vertices)
                                           : read_forest_scene(*scene->second.bytes);
   const std::size_t count = input.file.models.size();
@@ -203,7 +198,7 @@ void report_pillars(Json& report, std::vector<std::string>& notes, const SolvedF
 
 OperationResult run_relief_forest(const OperationCall& call, const ForestOptions& given) {
   Context& context = call.context;
-  const bool from_file = call.inputs.contains(scene_file);
+  const bool from_file = call.inputs.contains(scene_input);
   ForestOptions options = given;
   if (!from_file && options.layout == PillarLayout::scene) options.layout = PillarLayout::screens;
   const ForestInput input = [&] {

@@ -123,7 +123,7 @@ export function shapedPillar(pillar: Pillar, shape: Shape): Pillar {
 }
 
 /** Corners of a circle that is changed by hand. */
-const roundCorners = 16;
+const roundCorners = 8;
 
 /** With an outline of its own, for now the one that it has. */
 export function outlinedPillar(pillar: Pillar): Pillar {

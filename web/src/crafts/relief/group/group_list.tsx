@@ -7,7 +7,7 @@ import { Icon, IconButton, Menu } from '../../../ui';
 import { NumberField } from '../forest/list/number_field';
 import '../scene_fields.css';
 import type { ReliefSession } from '../relief_session';
-import type { Triple } from './placement';
+import type { Vector } from '../../../shared/geometry/rotation';
 
 const axes = ['x', 'y', 'z'] as const;
 
@@ -53,7 +53,7 @@ function PlaceFields({ session, model, index }: PlaceFieldsProps) {
   const { name } = model;
   const shown = group.held.value ?? model;
   const setOne = (field: 'turn_deg' | 'at_mm', axis: number, value: number) => {
-    const place = shown[field].map((old, k) => (k === axis ? value : old)) as unknown as Triple;
+    const place = shown[field].map((old, k) => (k === axis ? value : old)) as unknown as Vector;
     group.change(index, { [field]: place }, field === 'at_mm' ? `Move ${name}` : `Turn ${name}`);
   };
   const alone = (group.models.value?.length ?? 1) < 2;

@@ -7,7 +7,8 @@ import type { Viewport } from '../../../view';
 import type { ReliefSession } from '../relief_session';
 import type { Grip, GripElements } from './hold';
 import { byKey, dragged, grips } from './hold';
-import type { Triple, ViewAxes } from './placement';
+import type { Vector } from '../../../shared/geometry/rotation';
+import type { ViewAxes } from './placement';
 import { movedVertices, viewAxes } from './placement';
 
 const labels: Readonly<Record<Grip, string>> = {
@@ -48,7 +49,7 @@ export class GroupMover {
   }
 
   /** A place of the scene as the picture has it: drawn at the size of the relief. */
-  #drawn(place: Triple): Triple {
+  #drawn(place: Vector): Vector {
     const scale = this.#session.drawnScale.peek();
     return [place[0] * scale, place[1] * scale, place[2] * scale];
   }
@@ -59,7 +60,7 @@ export class GroupMover {
     model: PlacedModel,
   ): { readonly middlePx: Place; readonly mmAPixel: number } | null {
     const { right } = this.#axes(viewport);
-    const beside: Triple = [model.at_mm[0] + right[0], model.at_mm[1] + right[1], model.at_mm[2] + right[2]];
+    const beside: Vector = [model.at_mm[0] + right[0], model.at_mm[1] + right[1], model.at_mm[2] + right[2]];
     const middle = viewport.project(this.#drawn(model.at_mm));
     const other = viewport.project(this.#drawn(beside));
     if (middle === null || other === null) return null;

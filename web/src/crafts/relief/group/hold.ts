@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a hand or a key does to one model of a group, seen along the picture's axes.
 import type { PlacedModel } from '../../../shared/session/craft_document';
-import type { Triple, ViewAxes } from './placement';
+import type { Vector } from '../../../shared/geometry/rotation';
+import type { ViewAxes } from './placement';
 import { along, turnedBy } from './placement';
 
 export type Grip = 'move' | 'depth' | 'turn' | 'size';
@@ -20,9 +21,9 @@ const minSize_mm = 1;
 export const maxSize_mm = 10_000;
 
 const tidy = (value: number): number => Number(value.toFixed(2)) + 0;
-const tidyPlace = (at: Triple): Triple => [tidy(at[0]), tidy(at[1]), tidy(at[2])];
+const tidyPlace = (at: Vector): Vector => [tidy(at[0]), tidy(at[1]), tidy(at[2])];
 
-const moved = (model: PlacedModel, ...steps: readonly (readonly [Triple, number])[]): PlacedModel => ({
+const moved = (model: PlacedModel, ...steps: readonly (readonly [Vector, number])[]): PlacedModel => ({
   ...model,
   at_mm: tidyPlace(steps.reduce((at, [axis, by]) => along(at, axis, by), model.at_mm)),
 });

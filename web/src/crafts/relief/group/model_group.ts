@@ -17,7 +17,8 @@ import type { OpenedModel } from '../../../shared/session/opened_model';
 import { vectorOf } from '../../../shared/session/report';
 import type { RoomSession } from '../../../shared/session/room_session';
 import type { ReliefDocument } from '../relief_document';
-import type { Box, Triple } from './placement';
+import type { Vector } from '../../../shared/geometry/rotation';
+import type { Box } from './placement';
 import { placeBeside, viewAxes } from './placement';
 
 const usualSize_mm = 100;
@@ -167,9 +168,9 @@ export class ModelGroup {
     return [{ source, name: nameOf(source), size_mm: usualSize_mm, turn_deg: [0, 0, 0], at_mm: [0, 0, 0] }];
   }
 
-  #vector(name: string): Triple {
+  #vector(name: string): Vector {
     const value = this.#room.value(name);
-    return Array.isArray(value) && value.length === 3 ? (value.map(Number) as unknown as Triple) : [0, 0, -1];
+    return Array.isArray(value) && value.length === 3 ? (value.map(Number) as unknown as Vector) : [0, 0, -1];
   }
 
   change(index: number, change: Partial<PlacedModel>, label: string): void {
@@ -249,8 +250,8 @@ export class ModelGroup {
 }
 
 /** Sizes of a box whose longest side becomes the usual one. */
-function scaledSize(size: Triple | null): Triple {
+function scaledSize(size: Vector | null): Vector {
   const longest = size ? Math.max(...size) : 0;
   if (size === null || !(longest > 0)) return [usualSize_mm, usualSize_mm, usualSize_mm];
-  return size.map((value) => (value * usualSize_mm) / longest) as unknown as Triple;
+  return size.map((value) => (value * usualSize_mm) / longest) as unknown as Vector;
 }

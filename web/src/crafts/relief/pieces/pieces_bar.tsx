@@ -32,6 +32,7 @@ export function PiecesBar({ pieces }: { readonly pieces: ReliefPieces }) {
         max={steps}
         value={Math.round(steps * pieces.apart.value)}
         aria-valuetext={withUnit(String(Math.round(100 * pieces.apart.value)), '%')}
+        style={{ '--filled': `${100 * pieces.apart.value}%` }}
         onInput={({ currentTarget }) => (pieces.apart.value = Number(currentTarget.value) / steps)}
       />
     </section>

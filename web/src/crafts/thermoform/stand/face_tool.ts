@@ -6,7 +6,7 @@ import type { FlatSide } from '../../../view';
 import { prepareFlatSides } from '../../../view';
 import type { ThermoformSession } from '../thermoform_session';
 import { undersideIn } from './place_model';
-import type { Vector } from './stance';
+import type { Vector } from '../../../shared/geometry/rotation';
 import { placeOnSide } from './stand_model';
 
 /** Normals closer than this are the same side's. */

@@ -12,8 +12,9 @@ import { WasmRunner } from '../../../jobs/wasm_runner';
 import { findFlatSides } from '../../../view/mesh/flat_sides';
 import { boxOf, placed } from '../placement';
 import { placeModel, pointAt, rotationIn, stoodOtherwise } from './place_model';
-import type { Rotation } from './stance';
-import { about, after, laidOn, placedOn, rotationOf, sides, stanceOf } from './stance';
+import type { Rotation } from '../../../shared/geometry/rotation';
+import { about, after } from '../../../shared/geometry/rotation';
+import { laidOn, placedOn, rotationOf, sides, stanceOf } from './stance';
 
 const machine = { clamp_opening_x_mm: 220, clamp_opening_y_mm: 180 };
 const standard = { up: [0, 1, 0], turn_deg: 0, size_mm: null, x_mm: 0, y_mm: 0, sink_mm: 0, ...machine };

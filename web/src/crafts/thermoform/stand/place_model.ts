@@ -2,7 +2,8 @@
 // Where the core puts a model with given parameters (`core/thermoform/sheet/placement.cpp`), so that the picture
 // follows the hand before the core has answered. A test compares both.
 import type { JsonObject } from '../../../jobs/contract';
-import type { Rotation, Stance, Vector } from './stance';
+import type { Rotation, Vector } from '../../../shared/geometry/rotation';
+import type { Stance } from './stance';
 import { rotationOf, stanceOf, standing } from './stance';
 
 /** Between the model and the clamp's edge. */

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { describe, expect, it } from 'vitest';
 import { angleSeen, circle, handles, pointOn, ringAround, ticks } from './ring';
-import { about, turned } from './stance';
+import { about, turned } from '../../../shared/geometry/rotation';
 
 const box = { low: [-10, -40, 0], high: [50, 20, 90] } as const;
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The rings that a model is turned by: about the vertical axis, to the sides, and to front and back.
 import type { Box, Ray } from '../placement';
-import type { Vector } from './stance';
+import type { Vector } from '../../../shared/geometry/rotation';
 
 export type Handle = 'turn' | 'sideways' | 'forwards';
 export const handles: readonly Handle[] = ['turn', 'sideways', 'forwards'];

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import fc from 'fast-check';
 import { describe, expect, it } from 'vitest';
-import type { Rotation, Side, Vector } from './stance';
-import { about, after, laidOn, placedOn, rotationOf, sides, stanceOf, turned, unit } from './stance';
+import type { Rotation, Vector } from '../../../shared/geometry/rotation';
+import type { Side } from './stance';
+import { about, after, turned, unit } from '../../../shared/geometry/rotation';
+import { laidOn, placedOn, rotationOf, sides, stanceOf } from './stance';
 
 const close = (actual: readonly number[], expected: readonly number[], digits = 9) =>
   actual.forEach((value, i) => expect(value).toBeCloseTo(expected[i] ?? NaN, digits));

@@ -3,7 +3,8 @@
 import type { JsonObject } from '../../../jobs/contract';
 import type { ThermoformSession } from '../thermoform_session';
 import { rotationIn, stoodOtherwise } from './place_model';
-import type { Rotation, Side, Vector } from './stance';
+import type { Rotation, Vector } from '../../../shared/geometry/rotation';
+import type { Side } from './stance';
 import { laidOn, placedOn } from './stance';
 
 /** From `values` on, which hold the stance before; `coalesce` names what is being dragged. */

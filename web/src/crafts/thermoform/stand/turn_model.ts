@@ -10,8 +10,9 @@ import { dragging } from '../views';
 import { rotationIn } from './place_model';
 import type { Handle, Ring } from './ring';
 import { angleSeen, pointOn, ringAround } from './ring';
-import type { Rotation } from './stance';
-import { about, after, withinHalfTurn } from './stance';
+import type { Rotation } from '../../../shared/geometry/rotation';
+import { about, after } from '../../../shared/geometry/rotation';
+import { withinHalfTurn } from './stance';
 import { standBy } from './stand_model';
 
 export const snap_deg = 15;

@@ -14,6 +14,14 @@ interface CornersProps extends Shared {
 export function PillarCorners({ pillar, index, ...shared }: CornersProps) {
   const { session, mm } = shared;
   const corners = cornersOf(pillar);
+  // Small pillars have small handles, so that none covers the next.
+  const shortest = Math.min(
+    ...corners.map(([x, y], k) => {
+      const [a, b] = corners[(k + 1) % corners.length] ?? [x, y];
+      return Math.hypot(a - x, b - y);
+    }),
+  );
+  const size = (most: number, share: number) => Math.min(most * mm, share * shortest);
   const change = (edit: (one: Pillar) => Pillar, label: string, coalesce?: string) =>
     session.change((scene) => changePillar(scene, index, edit), label, coalesce);
   const what = { kind: 'pillar', index } as const;
@@ -23,7 +31,7 @@ export function PillarCorners({ pillar, index, ...shared }: CornersProps) {
         <AddCorner
           key={`side ${k}`}
           place={middleOfSide(corners, k)}
-          mm={mm}
+          size={size}
           label={`Pillar ${index + 1}, add a corner between ${k + 1} and ${((k + 1) % corners.length) + 1}`}
           onAdd={() => change((one) => addedCorner(one, k), `Add a corner to pillar ${index + 1}`)}
         />
@@ -47,8 +55,8 @@ export function PillarCorners({ pillar, index, ...shared }: CornersProps) {
           }
           onRemove={() => change((one) => removedCorner(one, k), `Take a corner from pillar ${index + 1}`)}
         >
-          <circle class="reach" r={11 * mm} />
-          <circle class="dot" r={4.5 * mm} stroke-width={1.5 * mm} />
+          <circle class="reach" r={size(11, 0.35)} />
+          <circle class="dot" r={size(4.5, 0.2)} stroke-width={size(1.5, 0.1)} />
         </Handle>
       ))}
     </>
@@ -57,12 +65,13 @@ export function PillarCorners({ pillar, index, ...shared }: CornersProps) {
 
 interface AddCornerProps {
   readonly place: Place;
-  readonly mm: number;
+  /** At most so many pixels, and this share of the shortest side. */
+  readonly size: (most: number, share: number) => number;
   readonly label: string;
   readonly onAdd: () => void;
 }
 
-function AddCorner({ place, mm, label, onAdd }: AddCornerProps) {
+function AddCorner({ place, size, label, onAdd }: AddCornerProps) {
   return (
     <g
       class="handle add-corner"
@@ -77,8 +86,8 @@ function AddCorner({ place, mm, label, onAdd }: AddCornerProps) {
         onAdd();
       }}
     >
-      <circle class="reach" r={7 * mm} />
-      <circle class="dot" r={2.5 * mm} stroke-width={1 * mm} />
+      <circle class="reach" r={size(7, 0.15)} />
+      <circle class="dot" r={size(2.5, 0.08)} stroke-width={size(1, 0.05)} />
     </g>
   );
 }

@@ -17,8 +17,9 @@ const labels: Readonly<Record<Grip, string>> = {
   turn: 'Turn',
   size: 'Change the size of',
 };
-/** Of the handles, so that none covers another. */
+/** Of the handles about the middle: none covers another, and none goes under what floats at the view's border. */
 const minRadiusPx = 44;
+const maxRadiusPx = 120;
 
 type Place = readonly [number, number];
 
@@ -129,7 +130,8 @@ export class GroupMover {
   placeHandles(viewport: Viewport, elements: GripElements, there: boolean): void {
     const model = there ? this.model.peek() : null;
     const seen = model && this.#seen(viewport, model);
-    const radius = model && seen ? Math.max(minRadiusPx, (0.5 * model.size_mm) / seen.mmAPixel) : 0;
+    const radius =
+      model && seen ? Math.min(maxRadiusPx, Math.max(minRadiusPx, (0.5 * model.size_mm) / seen.mmAPixel)) : 0;
     const diagonal = radius * Math.SQRT1_2;
     const offsets: Readonly<Record<Grip, Place>> = {
       move: [0, 0],

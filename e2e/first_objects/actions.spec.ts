@@ -16,17 +16,18 @@ async function blank(page: Page): Promise<ActionCount> {
   const counter = await countActions(page);
   await page.route('**/blank', (route) => route.fulfill({ contentType: 'text/html', body: html }));
   await page.goto('/blank');
-  counter.begin();
+  await counter.begin();
   return counter;
 }
-const done = (counter: ActionCount) => counter.end().actions.map(({ kind, what }) => `${kind}: ${what}`);
+const done = async (counter: ActionCount) =>
+  (await counter.end()).actions.map(({ kind, what }) => `${kind}: ${what}`);
 
 test('a press, a drag, a key; not moving, scrolling and holding a key', async ({ page }) => {
   const counter = await blank(page);
   await page.getByRole('button', { name: 'Make' }).click();
   await page.getByRole('button', { name: 'Make' }).hover();
   await page.mouse.wheel(0, 100);
-  expect(done(counter)).toEqual(['press: Make']);
+  expect(await done(counter)).toEqual(['press: Make']);
   const bed = await page.getByLabel('Bed').boundingBox();
   if (bed === null) throw new Error('The bed is not to be seen.');
   await page.mouse.move(bed.x + 10, bed.y + 10);
@@ -34,9 +35,9 @@ test('a press, a drag, a key; not moving, scrolling and holding a key', async ({
   await page.mouse.move(bed.x + 90, bed.y + 50, { steps: 5 });
   await page.mouse.up();
   await page.mouse.dblclick(bed.x + 10, bed.y + 10);
-  expect(done(counter).slice(1)).toEqual(['drag: Bed', 'press: Bed', 'press: Bed']);
+  expect((await done(counter)).slice(1)).toEqual(['drag: Bed', 'press: Bed', 'press: Bed']);
 
-  counter.begin();
+  await counter.begin();
   await page.getByRole('checkbox').click();
   await page.keyboard.down('ArrowRight');
   await page.keyboard.down('ArrowRight'); // repeated, as long as it is held
@@ -44,7 +45,7 @@ test('a press, a drag, a key; not moving, scrolling and holding a key', async ({
   await page.keyboard.press('Control+Enter');
   await page.keyboard.press('Shift+Tab');
   await page.keyboard.press('?');
-  expect(done(counter)).toEqual([
+  expect(await done(counter)).toEqual([
     'press: Mirror',
     'key: ArrowRight',
     'key: Ctrl+Enter',
@@ -61,16 +62,16 @@ test('a text with its Enter is one; the press into the field is another', async 
   await page.keyboard.press('Control+a');
   await page.keyboard.type('300');
   await page.keyboard.press('Enter');
-  expect(done(counter)).toEqual(['press: Width', 'text: Width']);
+  expect(await done(counter)).toEqual(['press: Width', 'text: Width']);
   await page.keyboard.type('400');
   await page.keyboard.press('Tab');
   await page.keyboard.type('5');
-  expect(done(counter).slice(2)).toEqual(['text: Width', 'key: Tab', 'text: Depth']);
-  counter.begin();
+  expect((await done(counter)).slice(2)).toEqual(['text: Width', 'key: Tab', 'text: Depth']);
+  await counter.begin();
   await page.getByText('Width').click(); // the label brings the focus
   await page.keyboard.type('1');
   await page.keyboard.press('Escape');
-  expect(done(counter)).toEqual(['press: Width', 'text: Width', 'key: Escape']);
+  expect(await done(counter)).toEqual(['press: Width', 'text: Width', 'key: Escape']);
 });
 
 test('files chosen together are one, a choice in a list is one', async ({ page }) => {
@@ -78,29 +79,29 @@ test('files chosen together are one, a choice in a list is one', async ({ page }
   const choosing = page.waitForEvent('filechooser');
   await page.getByRole('button', { name: 'Open' }).click();
   await (await choosing).setFiles([fileOf('a.obj', 'a'), fileOf('a.mtl', 'b')]);
-  expect(done(counter)).toEqual(['press: Open', 'files: a.obj, a.mtl']);
-  counter.begin();
+  expect(await done(counter)).toEqual(['press: Open', 'files: a.obj, a.mtl']);
+  await counter.begin();
   await page.getByRole('combobox').selectOption('Denim');
-  expect(done(counter)).toEqual(['choice: Denim']);
-  counter.begin();
+  expect(await done(counter)).toEqual(['choice: Denim']);
+  await counter.begin();
   await page.getByLabel('Bed').evaluate((bed) => {
     const dataTransfer = new DataTransfer();
     dataTransfer.items.add(new File(['a'], 'b.obj'));
     bed.dispatchEvent(new DragEvent('drop', { dataTransfer, bubbles: true }));
   });
-  expect(done(counter)).toEqual(['files: b.obj']);
+  expect(await done(counter)).toEqual(['files: b.obj']);
 });
 
 test('what a script does for a person is counted as if the person had done it', async ({ page }) => {
   const counter = await blank(page);
   await page.getByRole('button', { name: 'Make' }).evaluate((button: HTMLButtonElement) => button.click());
   await page.getByRole('button', { name: 'Make' }).dispatchEvent('click');
-  expect(done(counter)).toEqual(['press: Make', 'press: Make']);
-  counter.begin();
+  expect(await done(counter)).toEqual(['press: Make', 'press: Make']);
+  await counter.begin();
   await page.getByRole('textbox', { name: 'Width' }).fill('7');
   await page.getByRole('textbox', { name: 'Width' }).press('Enter');
   await page.getByRole('spinbutton').fill('8');
-  expect(done(counter)).toEqual(['press: Width', 'text: Width', 'press: Depth', 'text: Depth']);
+  expect(await done(counter)).toEqual(['press: Width', 'text: Width', 'press: Depth', 'text: Depth']);
 });
 
 test('it goes on counting after the page was loaded anew', async ({ page }) => {
@@ -108,7 +109,7 @@ test('it goes on counting after the page was loaded anew', async ({ page }) => {
   await page.getByRole('button', { name: 'Make' }).click();
   await page.reload();
   await page.getByRole('button', { name: 'Make' }).click();
-  expect(done(counter)).toHaveLength(2);
+  expect(await done(counter)).toHaveLength(2);
 });
 
 test.describe('with fingers', () => {
@@ -116,6 +117,6 @@ test.describe('with fingers', () => {
   test('a tap is one', async ({ page }) => {
     const counter = await blank(page);
     await page.getByRole('button', { name: 'Make' }).tap();
-    expect(done(counter)).toEqual(['press: Make']);
+    expect(await done(counter)).toEqual(['press: Make']);
   });
 });

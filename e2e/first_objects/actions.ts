@@ -13,12 +13,13 @@ interface Action {
 
 export interface ActionCount {
   /** Begins anew, with the time. */
-  begin(): void;
+  begin(): Promise<void>;
   /** What was done since, and the seconds that have passed. */
-  end(): { readonly actions: readonly Action[]; readonly seconds: number };
+  end(): Promise<{ readonly actions: readonly Action[]; readonly seconds: number }>;
 }
 
 const binding = 'formwrightAction';
+const barrier = 'formwrightAllReported';
 
 /** To be called before the page is opened. */
 export async function countActions(page: Page): Promise<ActionCount> {
@@ -29,13 +30,22 @@ export async function countActions(page: Page): Promise<ActionCount> {
     if (goesOn && last) actions[actions.length - 1] = { kind, what };
     else actions.push({ kind, what });
   });
+  await page.exposeBinding(barrier, () => undefined);
   await page.addInitScript(watchActions, binding);
+  // Reports come in their order, but after the browser's answer to what made them: this one comes after all of them.
+  const allReported = () =>
+    page.evaluate((name) => (window as unknown as Record<string, () => Promise<void>>)[name]?.(), barrier);
   return {
-    begin: () => {
+    begin: async () => {
+      await allReported();
       actions = [];
       start_ms = Date.now();
     },
-    end: () => ({ actions, seconds: (Date.now() - start_ms) / 1000 }),
+    end: async () => {
+      const seconds = (Date.now() - start_ms) / 1000;
+      await allReported();
+      return { actions, seconds };
+    },
   };
 }
 

@@ -60,26 +60,26 @@ async function save(page: Page, press: () => Promise<void>): Promise<Buffer> {
 
 test('first minute', async ({ page, counter }) => {
   await openPage(page);
-  counter.begin();
+  await counter.begin();
   await page.locator('.gallery button', { hasText: 'Bust' }).click();
   await expect(strip(page, ready)).toBeVisible();
-  recordRow('first_minute', counter);
+  await recordRow('first_minute', counter);
 });
 
 test('relief', async ({ page, counter }) => {
   await openPage(page);
-  counter.begin();
+  await counter.begin();
   await openOwnModel(page, 'Relief');
   await button(page, 'Solve at full detail').click();
   await expect(strip(page, 'Relief ready')).toBeVisible();
   const stl = await save(page, () => button(page, 'Export STL').click());
   expect(readStl(stl).closed).toBe(true);
-  recordRow('relief', counter);
+  await recordRow('relief', counter);
 });
 
 test('shell', async ({ page, counter }) => {
   await openPage(page);
-  counter.begin();
+  await counter.begin();
   await openOwnModel(page, 'Thermoform', paintedHill());
   await button(page, 'Form at full detail').click();
   await expect(strip(page, 'Sheet formed')).toBeVisible();
@@ -88,7 +88,7 @@ test('shell', async ({ page, counter }) => {
   await button(page, 'Export something else').click();
   const mould = await save(page, () => page.getByRole('menuitem', { name: /^Mould, STL/ }).click());
   expect(readStl(mould).closed).toBe(true);
-  recordRow('shell', counter);
+  await recordRow('shell', counter);
 });
 
 async function makeRibbon(page: Page): Promise<void> {
@@ -98,29 +98,29 @@ async function makeRibbon(page: Page): Promise<void> {
 
 test('zippable', async ({ page, counter }) => {
   await openPage(page);
-  counter.begin();
+  await counter.begin();
   await openOwnModel(page, 'Zippable');
   await makeRibbon(page);
   await page.getByRole('radio', { name: 'Sheets to cut' }).click();
   await expect(page.getByRole('img', { name: /^\d+ pieces? on \d+ sheets? of / })).toBeVisible();
   const plan = await save(page, () => button(page, 'Export plan, SVG').click());
   expect(plan.toString()).toContain('id="cut"');
-  recordRow('zippable', counter);
+  await recordRow('zippable', counter);
 });
 
 test('zipping', async ({ page, counter }) => {
   await openSampleIn(page, 'Zippable', 'Star');
   await makeRibbon(page);
-  counter.begin();
+  await counter.begin();
   await page.getByRole('radio', { name: 'Zipped' }).click();
   await button(page, 'Will it zip? Simulate cloth').click();
   await expect(page.getByText(/^It (zips|does not zip)/)).toBeVisible();
-  recordRow('zipping', counter);
+  await recordRow('zipping', counter);
 });
 
 test('drawn parts', async ({ page, counter }) => {
   await openPage(page);
-  counter.begin();
+  await counter.begin();
   await openOwnModel(page, 'Zippable');
   await button(page, 'Draw the parts').click();
   const model = await page.locator('.zippable-model').boundingBox();
@@ -143,13 +143,13 @@ test('drawn parts', async ({ page, counter }) => {
   await expect(page.getByText('Drawn by hand: 1 border')).toBeVisible();
   await expect(page.getByRole('list', { name: 'Parts' }).getByRole('button')).toHaveCount(2);
   await expect(strip(page, ready)).toBeVisible();
-  recordRow('drawn_parts', counter);
+  await recordRow('drawn_parts', counter);
 });
 
 test('evidence', async ({ page, counter }) => {
   const files = await measuredPyramid(page);
   await page.getByRole('link', { name: 'Formwright, start' }).click();
-  counter.begin();
+  await counter.begin();
   await chooseFiles(page, button(page, 'Open a file'), files);
   await expect(strip(page, 'Compared with the settings as they are')).toBeVisible();
   // As the tutorial does: one cause at a time, and coarse sheets, are much quicker.
@@ -162,7 +162,7 @@ test('evidence', async ({ page, counter }) => {
   await page.locator('.inspector-foot').getByRole('button', { name: 'Diagnose', exact: true }).click();
   await expect(strip(page, 'Diagnosis ready')).toBeVisible({ timeout: 600_000 });
   await expect(button(page, /^Uneven heating, side to side/)).toBeVisible();
-  recordRow('evidence', counter);
+  await recordRow('evidence', counter);
 });
 
 /** Not counted: so that the story is short, the laser is quicker than it would be. */
@@ -182,7 +182,7 @@ test('laser', async ({ page, counter }) => {
   await openOwnModel(page, 'Zippable', [smallBall]);
   await makeRibbon(page);
   await setLaserSpeeds(page);
-  counter.begin();
+  await counter.begin();
   await page.getByRole('radio', { name: 'Sheets to cut' }).click();
   await expect(page.getByRole('img', { name: /1 sheet of 400 × 400/ })).toBeVisible();
   await button(page, /Send to a machine/).click();
@@ -192,7 +192,7 @@ test('laser', async ({ page, counter }) => {
   await button(page, 'Start with the laser on').click();
   await expect(page.locator('.state-chip')).toHaveText('Working');
   if (inFull) await expect(strip(page, 'ball is done')).toBeVisible();
-  recordRow('laser', counter); // nothing more is asked of a person until it is done
+  await recordRow('laser', counter); // nothing more is asked of a person until it is done
 });
 
 /** Not counted: a medal that a mill carves in a minute. */
@@ -214,7 +214,7 @@ test('mill', async ({ page, counter }) => {
   await setReliefSize(page, '10', '1');
   await button(page, 'Solve at full detail').click();
   await expect(strip(page, 'Relief ready')).toBeVisible();
-  counter.begin();
+  await counter.begin();
   await button(page, 'Send to a machine').click();
   await button(page, 'Make the job').click();
   await expect(strip(page, 'Job ready')).toBeVisible();
@@ -239,23 +239,23 @@ test('mill', async ({ page, counter }) => {
     await dialog.getByRole('button', { name: 'Start with the spindle on' }).click();
     await expect(strip(page, done)).toBeVisible();
   }
-  recordRow('mill', counter);
+  await recordRow('mill', counter);
 });
 
 test('wrong file', async ({ page, counter }) => {
   await openPage(page);
-  counter.begin();
+  await counter.begin();
   await chooseFiles(page, button(page, 'Open a file'), [wrongFile]);
   await page.getByRole('dialog').getByRole('button', { name: 'Relief' }).click();
   await expect(page.getByRole('alert').getByText('Could not open notes.obj')).toBeVisible();
   await chooseFiles(page, button(page, 'Choose another file'), [ball]);
   await expect(strip(page, ready)).toBeVisible();
-  recordRow('wrong_file', counter);
+  await recordRow('wrong_file', counter);
 });
 
 test('keyboard', async ({ page, counter }) => {
   await openPage(page);
-  counter.begin();
+  await counter.begin();
   await page.keyboard.press('?');
   await expect(page.getByRole('dialog', { name: 'All keys' })).toBeVisible();
   await page.keyboard.press('Escape');
@@ -269,14 +269,14 @@ test('keyboard', async ({ page, counter }) => {
   await expect(strip(page, 'Relief ready')).toBeVisible();
   const stl = await save(page, () => page.keyboard.press('Control+e'));
   expect(readStl(stl).closed).toBe(true);
-  recordRow('keyboard', counter);
+  await recordRow('keyboard', counter);
 });
 
 test.describe('on a phone', () => {
   test.use({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
   test('relief', async ({ page, counter }) => {
     await openPage(page);
-    counter.begin();
+    await counter.begin();
     const choosing = page.waitForEvent('filechooser');
     await button(page, 'Open a file').tap();
     await (await choosing).setFiles(ball);
@@ -286,6 +286,6 @@ test.describe('on a phone', () => {
     await expect(strip(page, 'Relief ready')).toBeVisible();
     const stl = await save(page, () => button(page, 'Export STL').tap());
     expect(readStl(stl).closed).toBe(true);
-    recordRow('phone', counter);
+    await recordRow('phone', counter);
   });
 });

@@ -13,10 +13,10 @@ const rows = JSON.parse(readFileSync(resolve(import.meta.dirname, 'rows.json'), 
 const folder = resolve(import.meta.dirname, '../test-results/actions');
 
 /** Writes the row down for write_table.js, and fails where it took more actions than it once did. */
-export function recordRow(row: string, counter: ActionCount): void {
+export async function recordRow(row: string, counter: ActionCount): Promise<void> {
   const limit = rows.find((one) => one.row === row)?.max_actions;
   if (limit === undefined) throw new Error(`rows.json has no row ${row}.`);
-  const { actions, seconds } = counter.end();
+  const { actions, seconds } = await counter.end();
   mkdirSync(folder, { recursive: true });
   writeFileSync(resolve(folder, `${row}.json`), JSON.stringify({ row, seconds, actions }, null, 1));
   const listed = actions.map(({ kind, what }) => `${kind}: ${what}`);

@@ -58,7 +58,7 @@ function LearnCard() {
   const current = stepNow();
   return (
     <>
-      {box ? <Ring box={box} /> : null}
+      {target && box ? <Ring box={partInSight(target, box)} /> : null}
       <aside
         ref={card}
         class="learn-card"
@@ -134,8 +134,31 @@ function Buttons({ step, first }: { step: Step; first: boolean }) {
 }
 
 const margin_px = 5;
+const min_seen_px = 12;
 
-function Ring({ box }: { box: DOMRect }) {
+/** What of a control is in sight: not scrolled away, nor under the bar of rooms; null where that is next to nothing. */
+function partInSight(control: Element, box: DOMRect): DOMRect | null {
+  let { left, top, right, bottom } = box;
+  for (let parent = control.parentElement; parent !== null; parent = parent.parentElement) {
+    if (!/auto|scroll/.test(getComputedStyle(parent).overflowY)) continue;
+    const seen = parent.getBoundingClientRect();
+    left = Math.max(left, seen.left);
+    top = Math.max(top, seen.top);
+    right = Math.min(right, seen.right);
+    bottom = Math.min(bottom, seen.bottom);
+  }
+  const bar = document.querySelector('nav');
+  // At the left on a desk, below on a phone.
+  if (bar !== null && !bar.contains(control)) {
+    const { top: barTop, left: barLeft } = bar.getBoundingClientRect();
+    if (barLeft <= left && barTop > innerHeight / 2) bottom = Math.min(bottom, barTop);
+  }
+  const [width, height] = [right - left, bottom - top];
+  return Math.min(width, height) < min_seen_px ? null : new DOMRect(left, top, width, height);
+}
+
+function Ring({ box }: { box: DOMRect | null }) {
+  if (box === null) return null;
   return (
     <div
       class="learn-ring"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The tutorial that a person follows now. It watches the page and touches neither the project nor its steps to undo.
-import { signal } from '@preact/signals';
+import { batch, signal } from '@preact/signals';
 import type { ProjectStore } from '../../project/project_store';
 import { go, place } from '../route';
 import { findControl } from './find_control';
@@ -46,7 +46,10 @@ const targetOf = (step: Step): Control | null =>
 
 function turnTo(next: Learning | null): void {
   seen = nothing;
-  learning.value = next;
+  batch(() => {
+    learning.value = next;
+    point(); // else the card would first find its place by the control of the step before
+  });
   if (next === null) sessionStorage.removeItem(storageKey);
   else sessionStorage.setItem(storageKey, JSON.stringify([next.tutorial.name, next.step]));
 }
@@ -77,10 +80,15 @@ export function sayDone(): void {
   look();
 }
 
-function look(): void {
+function point(): void {
   const step = stepNow();
   const target = step && targetOf(step);
   pointedAt.value = target && findControl(target);
+}
+
+function look(): void {
+  const step = stepNow();
+  point();
   ++looked.value;
   if (step && stepDone(step, seen)) skipStep();
 }

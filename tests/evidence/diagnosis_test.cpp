@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "evidence/diagnosis/diagnosis.h"
+#include "evidence/diagnosis/unseen.h"
 
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/matchers/catch_matchers_floating_point.hpp>
@@ -454,7 +455,7 @@ TEST_CASE("Diagnosis.LooksAgainMoreFinelyAtWhatItCannotDecide") {
   SlidingToy other;
   other.measure(truth);
   Context context;
-  CHECK(gain_on_unseen(other, model, d, context).after.mean < 0.08);
+  CHECK(predict_unseen(other, model, d, context).gain.after.mean < 0.08);
 }
 
 TEST_CASE("Diagnosis.WhatIsDecidedIsNotLookedAtAgain") {

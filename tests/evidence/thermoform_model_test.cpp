@@ -67,7 +67,12 @@ TEST_CASE("ThermoformModel.WrongDataGetAClearSentence") {
   expect_refused(changed([](MeasuredPoint& p) { p.sheet_mm += Vec2(500, 0); }), "beyond the sheet");
   FormedObject tiny = good;
   tiny.points.resize(5);
-  expect_refused(tiny, "at least 30");
+  expect_refused(tiny, "at least 6");
+  FormedObject few = good;
+  few.points.resize(20);
+  for (MeasuredPoint& p : few.points) p.sigma_mm = 0.3;
+  few.points.back().sigma_mm = 0;
+  expect_refused(few, "give sigma_mm for each point");
 }
 
 TEST_CASE("ThermoformModel.ATurnedSheetIsReadAsItLay") {

@@ -58,6 +58,11 @@ std::vector<std::vector<double>> read_number_table(ByteView csv, const std::stri
       }
       continue;
     }
+    bool measured = std::none_of(columns.begin(), columns.end(), [](const ColumnRule& c) { return c.may_be_blank; });
+    for (std::size_t i = 0; i < columns.size(); ++i)
+      measured |= columns[i].may_be_blank && place[i] >= 0 && static_cast<std::size_t>(place[i]) < fields.size() &&
+                  !fields[static_cast<std::size_t>(place[i])].empty();
+    if (!measured && fields.size() > 1) continue;
     std::vector<double> row(columns.size());
     for (std::size_t i = 0; i < columns.size(); ++i) {
       if (place[i] < 0) continue;

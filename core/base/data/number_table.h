@@ -10,7 +10,8 @@ namespace formwright {
 
 struct ColumnRule {
   std::string name;
-  bool required = true;  // else 0 where the file has no such column
+  bool required = true;       // else 0 where the file has no such column
+  bool may_be_blank = false;  // a row whose columns of this kind are all blank is passed over: not measured
 };
 
 /// Rows of the named columns, in the order of `columns`; others are passed over. Commas, any line ends, blanks around

@@ -368,18 +368,6 @@ class Diagnostician {
 
 }  // namespace
 
-namespace {
-
-/// The coordinate of `to` for a value of `from`: what an object's own set-up says of an effect stays, and what was
-/// found comes on top.
-double carried_over(const ModelParameter& to, const ModelParameter& from, double value) {
-  if (to.role == ParameterRole::effect && to.nominal != from.nominal)
-    value = std::clamp(to.nominal + value - from.nominal, to.low, to.high);
-  return to.coordinate(value);
-}
-
-}  // namespace
-
 const char* reading_name(Reading reading) {
   switch (reading) {
     case Reading::none: return "none";
@@ -418,32 +406,6 @@ Diagnosis diagnose(SimulationBag& bag, const DiagnosisOptions& options, Context&
   result.seconds_calibration = seconds_calibration;
   result.seconds = watch.seconds();
   return result;
-}
-
-HeldOutGain gain_on_unseen(const ForwardModel& unseen, const ForwardModel& from, const Diagnosis& found,
-                           Context& context) {
-  const ForwardModel& model = found.looked_again && unseen.finer() != nullptr ? *unseen.finer() : unseen;
-  const auto translated = [&](const Eigen::VectorXd& u) {
-    Eigen::VectorXd own = model.nominal();
-    for (std::size_t p = 0; p < model.parameters().size(); ++p)
-      for (std::size_t q = 0; q < from.parameters().size(); ++q)
-        if (model.parameters()[p].name == from.parameters()[q].name &&
-            model.parameters()[p].role != ParameterRole::discrepancy)
-          own[static_cast<Eigen::Index>(p)] = carried_over(model.parameters()[p], from.parameters()[q],
-                                                           from.parameters()[q].value(u[static_cast<Eigen::Index>(q)]));
-    return own;
-  };
-  SimulationBag bag(model);
-  const auto predictions = bag.run(std::vector<Eigen::VectorXd>{translated(found.base.u), translated(found.extended.u)},
-                                   context, "Predicting the validation object");
-  if (!predictions[0] || !predictions[1])
-    throw Error(ErrorCode::could_not_solve, "unseen",
-                "The validation object cannot be simulated with the fitted parameters: check its mould and set-up.");
-  std::vector<Eigen::VectorXd> weights;
-  const Predictions after = residuals(model, *predictions[1]);
-  for (std::size_t object = 0; object < after.size(); ++object)
-    weights.push_back(estimate_noise(model.measurements()[object], after[object]).weights);
-  return compare_errors(model, point_errors(residuals(model, *predictions[0]), weights), point_errors(after, weights));
 }
 
 }  // namespace formwright

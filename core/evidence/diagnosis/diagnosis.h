@@ -76,10 +76,4 @@ struct DiagnosisOptions {
 /// Throws Error{could_not_solve} where the base model cannot be simulated, Error{cancelled}.
 Diagnosis diagnose(SimulationBag& bag, const DiagnosisOptions& options, Context& context);
 
-/// Errors on objects that were not used, by the calibrated and the extended model, simulated as finely as what was
-/// decided. `found` is in coordinates of `from`, whose parameters have the same names as those of `unseen`. Throws
-/// Error{could_not_solve, cancelled}.
-HeldOutGain gain_on_unseen(const ForwardModel& unseen, const ForwardModel& from, const Diagnosis& found,
-                           Context& context);
-
 }  // namespace formwright

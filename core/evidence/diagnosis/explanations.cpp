@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "evidence/fit/free_fit.h"
+#include "evidence/fit/usual_strengths.h"
 
 namespace formwright {
 namespace {
@@ -79,26 +80,7 @@ void Explanations::screen() {
 }
 
 std::vector<Sensitivities> Explanations::usual_sensitivities() {
-  std::vector<Sensitivities> result = nominal_sensitivities_;
-  std::vector<std::size_t> one_sided;
-  std::vector<Eigen::VectorXd> points;
-  for (std::size_t p = 0; p < model_.parameters().size(); ++p) {
-    const ModelParameter& parameter = model_.parameters()[p];
-    if (parameter.role != ParameterRole::effect || !parameter.one_sided()) continue;
-    one_sided.push_back(p);
-    points.push_back(model_.nominal());
-    points.back()[static_cast<Eigen::Index>(p)] = parameter.prior_sd;
-    points.back() = within_ranges(model_, points.back());
-  }
-  const auto predictions = bag_.run(points, context_, "Predicting the held-out data");
-  for (std::size_t i = 0; i < one_sided.size(); ++i) {
-    if (!predictions[i]) continue;  // what a little of it does stands for it
-    const auto p = static_cast<Eigen::Index>(one_sided[i]);
-    for (std::size_t object = 0; object < result.size(); ++object)
-      result[object][one_sided[i]] =
-          ((*predictions[i])[object] - at_nominal_[object]) / (points[i][p] - model_.nominal()[p]);
-  }
-  return result;
+  return at_usual_strengths(bag_, at_nominal_, nominal_sensitivities_, context_, "Predicting the held-out data");
 }
 
 void Explanations::weigh_screened() {

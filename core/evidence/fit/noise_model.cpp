@@ -38,6 +38,11 @@ NoiseEstimate estimate_noise(const Measurement& measurement, const Eigen::Matrix
     for (Eigen::Index i = 0; i < n; ++i)
       sigma[i] = measurement.sigma[i] > 0 ? std::max(measurement.sigma[i], 0.1 * result.stated_sigma) : usual;
   }
+  if (stated && n < min_points_to_find_noise) {
+    result.weights = sigma.array().square().inverse();
+    result.sigma = std::sqrt(sigma.array().square().mean());
+    return result;
+  }
 
   // Smooth part and scale by turns, with weights as of Student's t, so that outliers bend neither.
   Eigen::VectorXd trust = Eigen::VectorXd::Ones(n);

@@ -17,6 +17,11 @@ struct NoiseEstimate {
   int outliers = 0;
 };
 
+/// With fewer points, nothing but the stated standard deviations says how large the noise is: what is left of ten
+/// points can be smooth as well.
+inline constexpr int min_points_to_find_noise = 30;
+
+/// Fewer points than min_points_to_find_noise are taken as stated, none of them as an outlier.
 /// `residual` n x d of some model near the truth. What is smooth over the object is not noise, so it is taken off
 /// first, robustly.
 NoiseEstimate estimate_noise(const Measurement& measurement, const Eigen::MatrixXd& residual);

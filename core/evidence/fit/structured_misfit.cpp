@@ -11,8 +11,9 @@ namespace {
 constexpr int modes_per_side = 9;
 constexpr double correlation_length = 0.12;  // of the object's side: about 25 mm of a sheet
 
-/// n x 81 cosine modes with the square roots of the spectrum.
-Eigen::MatrixXd cosine_modes(const Eigen::MatrixX2d& place) {
+}  // namespace
+
+Eigen::MatrixXd structure_modes(const Eigen::MatrixX2d& place) {
   Eigen::MatrixXd modes(place.rows(), modes_per_side * modes_per_side);
   double total = 0;
   for (int a = 0; a < modes_per_side; ++a)
@@ -28,8 +29,6 @@ Eigen::MatrixXd cosine_modes(const Eigen::MatrixX2d& place) {
     }
   return modes / std::sqrt(total);
 }
-
-}  // namespace
 
 GramByStructure& GramByStructure::operator+=(const GramByStructure& other) {
   if (gram.empty()) return *this = other;
@@ -59,7 +58,7 @@ StructuredMisfit::StructuredMisfit(const Measurement& measurement, Precisions pr
     : precisions_(std::move(precisions)),
       d_(static_cast<Eigen::Index>(std::lround(std::sqrt(static_cast<double>(precisions_.cols()))))),
       tau_(std::move(tau)),
-      modes_(cosine_modes(measurement.place)) {
+      modes_(structure_modes(measurement.place)) {
   for (Eigen::Index i = 0; i < precisions_.rows(); ++i)
     if (precisions_(i, 0) > 0)
       log_noise_ -= std::log(Eigen::MatrixXd(precisions_.row(i).reshaped(d_, d_)).determinant());

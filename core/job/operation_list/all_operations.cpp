@@ -30,6 +30,7 @@ std::vector<Operation> all_operations(Operation evidence_register) {
                                 evidence_diagnose_operation(),
                                 evidence_diagnose_relief_operation(),
                                 evidence_virtual_object_operation(),
+                                evidence_plan_points_operation(),
                                 zippable_design_operation(),
                                 zippable_plan_operation(),
                                 zippable_simulate_operation(),

@@ -91,9 +91,13 @@ Json write_object_setup(const ThermoformOptions& o, MeasuredSurface surface) {
 }
 
 std::vector<MeasuredPoint> read_measured_points(ByteView csv) {
-  const auto rows =
-      read_number_table(csv, "measured.csv", "measured",
-                        {{"sheet_x_mm"}, {"sheet_y_mm"}, {"x_mm"}, {"y_mm"}, {"z_mm"}, {"sigma_mm", false}});
+  const auto rows = read_number_table(csv, "measured.csv", "measured",
+                                      {{"sheet_x_mm"},
+                                       {"sheet_y_mm"},
+                                       {"x_mm", true, true},
+                                       {"y_mm", true, true},
+                                       {"z_mm", true, true},
+                                       {"sigma_mm", false}});
   std::vector<MeasuredPoint> points;
   for (const std::vector<double>& row : rows) {
     if (row[5] < 0)

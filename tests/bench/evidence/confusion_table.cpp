@@ -18,6 +18,7 @@
 
 #include "evidence/calibration.h"
 #include "evidence/diagnosis/diagnosis.h"
+#include "evidence/diagnosis/unseen.h"
 #include "evidence/nearest_sensitivity.h"
 #include "evidence/virtual_lab.h"
 
@@ -175,7 +176,7 @@ Json one_case(const std::vector<std::string>& hidden, double level, double sigma
   if (arguments.unseen) {
     const auto other = static_cast<Mould>((static_cast<int>(mould) + 1) % 4);
     ThermoformModel second({make_object(other, world, effects, observation, random)}, asked);
-    const HeldOutGain gain = gain_on_unseen(second, model, d, context);
+    const HeldOutGain gain = predict_unseen(second, model, d, context).gain;
     line["unseen_mm"] = {gain.before.mean, gain.after.mean};
   }
   return line;

@@ -9,12 +9,13 @@
 #include "base/statistics.h"
 #include "base/format.h"
 #include "base/sha256.h"
+#include "evidence/fit/noise_model.h"
 #include "thermoform/sheet/sheet_mesh.h"
 
 namespace formwright {
 namespace {
 
-constexpr std::size_t min_sheet_points = 30;
+constexpr std::size_t min_sheet_points = 6;
 constexpr int fewest_triangles = 1000;   // of the cheaper model
 constexpr int max_triangles = 5000;      // of a model that has a finer one
 constexpr std::size_t max_sheets = 200;  // kept at a time; about 0.2 MB each
@@ -88,6 +89,12 @@ void check_measured_object(const FormedObject& object) {
   if (object.points.size() < min_sheet_points)
     refuse("measured.csv has " + std::to_string(object.points.size()) + " points; at least " +
            std::to_string(min_sheet_points) + ", spread over the sheet, are needed.");
+  const bool stated =
+      std::all_of(object.points.begin(), object.points.end(), [](const MeasuredPoint& p) { return p.sigma_mm > 0; });
+  if (object.points.size() < static_cast<std::size_t>(min_points_to_find_noise) && !stated)
+    refuse("with " + std::to_string(object.points.size()) + " points, fewer than " +
+           std::to_string(min_points_to_find_noise) +
+           ", the noise cannot be found in the data: give sigma_mm for each point (0.3 is usual for calipers).");
   const auto options = read_parameters<ThermoformOptions>(object.setup.parameters);
   const double on_sheet = spread(object.points, true), in_space = spread(object.points, false);
   if (!(on_sheet > 0) || !(in_space > 0))

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <cmath>
 
+#include "evidence/diagnosis/unseen.h"
 #include "evidence/models/thermoform/proposals.h"
 #include "job/contract/operation_options.h"
 #include "job/operations/evidence/diagnosis_result.h"
@@ -38,30 +39,42 @@ std::vector<OutputInfo> evidence_diagnose_outputs() {
                   "The material and causes found, to be used in later simulations (--profile).", true});
   list.push_back(
       {"residuals.csv", "text/csv", "Residuals",
-       "Every measured point with its position in the calibrated simulation and in the one that includes the causes.",
+       "Every measured point, of validation objects too, with its position in the calibrated simulation and in the one that includes the causes.",
        true});
   return list;
 }
 
-std::string residuals_csv(const ThermoformModel& model, const Diagnosis& d) {
-  std::string text =
-      "object,sheet_x_mm,sheet_y_mm,x_mm,y_mm,z_mm,calibrated_x_mm,calibrated_y_mm,calibrated_z_mm,extended_x_mm,extended_y_mm,extended_z_mm,weight\n";
+/// Rows of residuals.csv, an object after the other.
+std::string residual_rows(const std::vector<FormedObject>& objects, const Predictions& calibrated,
+                          const Predictions& extended, const std::vector<Eigen::VectorXd>& weights) {
+  std::string text;
   char line[320];
-  for (std::size_t object = 0; object < model.objects().size(); ++object) {
-    const FormedObject& own = model.objects()[object];
+  for (std::size_t object = 0; object < objects.size(); ++object) {
+    const FormedObject& own = objects[object];
     std::string name = own.name;
     for (char& c : name)
       if (c == ',' || c == '"' || c == '\n' || c == '\r') c = '_';
     for (std::size_t i = 0; i < own.points.size(); ++i) {
       const MeasuredPoint& p = own.points[i];
       const auto row = static_cast<Eigen::Index>(i);
-      const auto before = d.base.predictions[object].row(row), after = d.extended.predictions[object].row(row);
+      const auto before = calibrated[object].row(row), after = extended[object].row(row);
       std::snprintf(line, sizeof line, ",%.7g,%.7g,%.7g,%.7g,%.7g,%.7g,%.7g,%.7g,%.7g,%.7g,%.7g,%.4g\n", p.sheet_mm.x(),
                     p.sheet_mm.y(), p.place_mm.x(), p.place_mm.y(), p.place_mm.z(), before[0], before[1], before[2],
-                    after[0], after[1], after[2], d.noise[object].weights[row]);
+                    after[0], after[1], after[2], weights[object][row]);
       text += name + line;
     }
   }
+  return text;
+}
+
+std::string residuals_csv(const ThermoformModel& model, const Diagnosis& d, const ThermoformModel* other,
+                          const std::optional<UnseenObjects>& unseen) {
+  std::string text =
+      "object,sheet_x_mm,sheet_y_mm,x_mm,y_mm,z_mm,calibrated_x_mm,calibrated_y_mm,calibrated_z_mm,extended_x_mm,extended_y_mm,extended_z_mm,weight\n";
+  std::vector<Eigen::VectorXd> weights;
+  for (const NoiseEstimate& noise : d.noise) weights.push_back(noise.weights);
+  text += residual_rows(model.objects(), d.base.predictions, d.extended.predictions, weights);
+  if (unseen) text += residual_rows(other->objects(), unseen->base, unseen->extended, unseen->weights);
   return text;
 }
 
@@ -114,11 +127,13 @@ OperationResult run_evidence_diagnose(const OperationCall& call, const DiagnoseO
       report.separations.push_back(std::move(separated));
     }
   }
+  std::optional<UnseenObjects> predicted;
   if (other) {
     const auto span = call.context.span(0.95, 0.99, "Predicting the validation object");
     for (const FormedObject& object : other->objects()) report.unseen_names.push_back(object.name);
     try {
-      report.unseen = gain_on_unseen(*other, model, diagnosis, call.context);
+      predicted = predict_unseen(*other, model, diagnosis, call.context);
+      report.unseen = predicted->gain;
     } catch (const Error& error) {
       if (error.code() != ErrorCode::could_not_solve) throw;
       report.unseen_names.clear();
@@ -143,7 +158,7 @@ OperationResult run_evidence_diagnose(const OperationCall& call, const DiagnoseO
       if (info.name == name && call.wants(name)) result.outputs.push_back(make_output(info, to_bytes(text)));
   };
   add("profile.json", write_machine_profile(profile));
-  add("residuals.csv", residuals_csv(model, diagnosis));
+  add("residuals.csv", residuals_csv(model, diagnosis, other.get(), predicted));
   return result;
 }
 

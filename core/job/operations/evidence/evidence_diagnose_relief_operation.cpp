@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "evidence/diagnosis/unseen.h"
 #include "evidence/models/relief/relief_model.h"
 #include "formats/mesh_io.h"
 #include "job/contract/operation_options.h"
@@ -66,7 +67,7 @@ OperationResult run_evidence_diagnose_relief(const OperationCall& call, const Di
   if (!unseen.empty()) {
     for (const PhotographedRelief& relief : unseen) report.unseen_names.push_back(relief.name);
     const ReliefModel other(std::move(unseen));
-    report.unseen = gain_on_unseen(other, model, diagnosis, call.context);
+    report.unseen = predict_unseen(other, model, diagnosis, call.context).gain;
   }
   report.notes.emplace_back("Brightness is measured as a fraction of the brightest point.");
   return diagnosis_result(call, report);

@@ -8,4 +8,5 @@ Operation evidence_calibrate_operation();        // fits the material to measure
 Operation evidence_diagnose_operation();         // names the cause of a misfit
 Operation evidence_diagnose_relief_operation();  // the same for a relief's shading
 Operation evidence_virtual_object_operation();   // a measured object of a machine whose faults are chosen
+Operation evidence_plan_points_operation();      // which few points to measure by hand, and what they would show
 }  // namespace formwright

@@ -4,12 +4,14 @@ import type { JobInput, Json, JsonObject, Report } from '../../jobs/contract';
 import type { BlobReference } from '../../project/document';
 import type { CraftResult, RoomDocument, Subject } from '../../shared/session/craft_document';
 import { emptyRoom, RoomCommands } from '../../shared/session/craft_document';
+import type { ByHand } from './by_hand/hand_marks';
 
 export const diagnosing = 'evidence-diagnose';
 const calibrating = 'evidence-calibrate';
 export const comparing = 'thermoform-compare';
 export const inventing = 'evidence-virtual-object';
 export const registering = 'evidence-register';
+export const planning = 'evidence-plan-points';
 
 export type Mode = 'diagnose' | 'calibrate';
 /** `unseen`: only to measure the gain on. */
@@ -65,6 +67,7 @@ export interface EvidenceDocument extends RoomDocument {
   readonly objects: readonly MeasuredObject[];
   readonly draft: Draft | null;
   readonly scan: Scan | null;
+  readonly byHand: ByHand | null;
 }
 
 export const emptyEvidence: EvidenceDocument = {
@@ -73,6 +76,7 @@ export const emptyEvidence: EvidenceDocument = {
   objects: [],
   draft: null,
   scan: null,
+  byHand: null,
 };
 
 export const operationOf = (mode: Mode): string => (mode === 'diagnose' ? diagnosing : calibrating);
@@ -168,6 +172,16 @@ class EvidenceCommands extends RoomCommands<EvidenceDocument> {
   keepMeasuredScan(measured: MeasuredScan) {
     return this.command({ label: 'Measure the scan', recorded: false }, ({ scan }) => ({
       scan: scan && { ...scan, measured },
+    }));
+  }
+
+  setByHand(byHand: ByHand | null, label: string) {
+    return this.command({ label }, () => ({ byHand }));
+  }
+
+  changeByHand(change: Partial<ByHand>, label: string, coalesce?: string) {
+    return this.command({ label, ...(coalesce ? { coalesce } : {}) }, ({ byHand }) => ({
+      byHand: byHand && { ...byHand, ...change },
     }));
   }
 

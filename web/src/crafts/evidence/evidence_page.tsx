@@ -19,6 +19,9 @@ import { simulatedIn } from './pictures/residuals';
 import { ResultsStrip } from './results_strip';
 import { ScanInspector } from './scan/scan_inspector';
 import { ScanPanel } from './scan/scan_panel';
+import { begin } from './by_hand/plan_marks';
+import { HandInspector } from './by_hand/hand_inspector';
+import { HandPanel } from './by_hand/hand_panel';
 import { PatternButton } from './pattern_dialog';
 import { VirtualObject } from './objects/virtual_object';
 
@@ -44,7 +47,7 @@ export function EvidencePage({ session, onChooseFile }: EvidencePageProps) {
       if (session.diagnosis.value) void saveReport(session);
     },
   }));
-  const { objects, scan } = session.document.value;
+  const { objects, scan, byHand } = session.document.value;
   const opening = session.activity.value.kind === 'opening';
   const notes = <Notes session={session} onChooseFile={onChooseFile} />;
   return (
@@ -53,6 +56,8 @@ export function EvidencePage({ session, onChooseFile }: EvidencePageProps) {
         <h1 class="hidden-text">Evidence</h1>
         {scan ? (
           <ScanPanel session={session} scan={scan} onChooseFile={onChooseFile} />
+        ) : byHand ? (
+          <HandPanel session={session} byHand={byHand} />
         ) : objects.length === 0 ? (
           opening ? null : (
             <Empty session={session} onChooseFile={onChooseFile} />
@@ -66,6 +71,8 @@ export function EvidencePage({ session, onChooseFile }: EvidencePageProps) {
         <Sheet label="Objects and causes">
           {scan ? (
             <ScanInspector session={session} scan={scan} />
+          ) : byHand ? (
+            <HandInspector session={session} byHand={byHand} />
           ) : (
             <Inspector session={session} onChooseFile={onChooseFile} />
           )}
@@ -99,6 +106,7 @@ function Empty({ session, onChooseFile }: EvidencePageProps) {
             <li>
               <strong>Measured points of the formed sheet.</strong> A table named measured.csv. A photographed
               scan of a printed sheet with its pattern.json does as well: its points are measured first.
+              Without a scanner, ten marks measured with calipers will do.
             </li>
           </ul>
           <p class="aside">Drop the three files together, their folder, or a zip of it.</p>
@@ -108,6 +116,7 @@ function Empty({ session, onChooseFile }: EvidencePageProps) {
       <Button kind="filled" icon="upload" onClick={onChooseFile}>
         Open a measured object
       </Button>
+      <Button onClick={() => begin(session)}>Measure with calipers</Button>
       {invention ? <VirtualObject session={session} operation={invention} /> : null}
       <PatternButton session={session} />
     </EmptyRoom>

@@ -51,8 +51,8 @@ export class EvidenceSession extends RoomSession<EvidenceDocument> {
   readonly document = computed(() => evidence.of(this.services.projects.document.value));
   readonly mode = computed(() => this.document.value.mode);
   readonly hasWork = computed(() => {
-    const { objects, draft, scan } = this.document.value;
-    return objects.length > 0 || draft !== null || scan !== null;
+    const { objects, draft, scan, byHand } = this.document.value;
+    return objects.length > 0 || draft !== null || scan !== null || byHand !== null;
   });
   readonly operation = computed(() => this.operationNamed(operationOf(this.mode.value)) ?? null);
   readonly subject = computed(() => subjectOf(this.document.value));
@@ -134,7 +134,7 @@ export class EvidenceSession extends RoomSession<EvidenceDocument> {
     this.cancelOutdatedSolve();
     untracked(() => {
       if (object === null) this.look.value = null;
-      else if (result && this.mode.value === 'diagnose' && object.use === 'fit')
+      else if (result && this.mode.value === 'diagnose' && object.use !== 'off')
         void this.#showResult(result, object);
       else this.#lookQuickly(object);
     });

@@ -5,6 +5,7 @@ import type { ComponentChildren } from 'preact';
 import { useId } from 'preact/hooks';
 import { Button, formatCount, formatNumber, Icon, Menu, Segmented, Switch } from '../../ui';
 import { ParameterPanel } from '../../shared/panels/parameters/parameter_panel';
+import { begin } from './by_hand/plan_marks';
 import { Causes } from './causes';
 import type { MeasuredObject, Use } from './evidence_document';
 import { evidence } from './evidence_document';
@@ -65,6 +66,9 @@ export function Inspector({ session, onChooseFile }: InspectorProps) {
           </ul>
           <Button size="small" icon="plus" onClick={onChooseFile}>
             Add an object
+          </Button>
+          <Button size="small" kind="quiet" onClick={() => begin(session)}>
+            Measure one with calipers
           </Button>
         </section>
         {diagnosis ? (

@@ -7,6 +7,8 @@ import { RunningStrip } from '../../shared/panels/room_strip';
 import { percent, readDiagnosis } from './diagnosis';
 import { diagnosing, evidence, usesIn } from './evidence_document';
 import type { EvidenceSession } from './evidence_session';
+import { measuredMarks } from './by_hand/hand_marks';
+import { openingOf, planNow } from './by_hand/plan_marks';
 import { measuredNow } from './scan/measure_scan';
 import { distancesOf, meanOf } from './pictures/residuals';
 
@@ -55,7 +57,18 @@ function shortOf(result: CraftResult): string {
 }
 
 function stateOf(session: EvidenceSession) {
-  const { scan } = session.document.value;
+  const { scan, byHand } = session.document.value;
+  if (byHand && !scan) {
+    const plan = planNow(session, byHand);
+    const measured = plan ? measuredMarks(byHand, openingOf(byHand)).length : 0;
+    return {
+      state: 'idle' as const,
+      title: plan ? 'Marks chosen' : 'Measure by hand',
+      detail: plan
+        ? `${measured} of ${byHand.marks.length} measured`
+        : 'Press Choose the marks to find out where to measure',
+    };
+  }
   if (scan) {
     const measured = measuredNow(scan);
     return measured

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "job/contract/model_input.h"
 #include "job/operations/relief/pieces/piece_files.h"
 
 #include <algorithm>

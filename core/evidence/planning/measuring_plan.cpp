@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "evidence/planning/measuring_plan.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <optional>
+
+#include "base/error.h"
+#include "evidence/fit/hypotheses.h"
+#include "evidence/fit/structured_objective.h"
+#include "evidence/fit/usual_strengths.h"
+#include "evidence/planning/point_information.h"
+
+namespace formwright {
+namespace {
+
+constexpr const char* trying = "Trying each cause";
+constexpr double tie = 1e-6;  // of a gain: mirrored points tell the same, and the first of them is taken everywhere
+
+/// The model about two materials, and how well each point would be known.
+struct Surroundings {
+  Eigen::MatrixXd expected;
+  std::vector<int> columns;  // all parameters
+  Sensitivities about_stiffer, about_nominal;
+  Precisions precisions;
+};
+
+/// A material that a calibration may well end at.
+Eigen::VectorXd stiffer(const ForwardModel& model) {
+  Eigen::VectorXd u = model.nominal();
+  const std::vector<int> base = model.base_parameters();
+  if (!base.empty()) u[base.front()] = model.parameters()[static_cast<std::size_t>(base.front())].prior_sd;
+  return within_ranges(model, u);
+}
+
+Surroundings look_around(SimulationBag& bag, Context& context) {
+  const ForwardModel& model = bag.model();
+  Surroundings around;
+  around.columns.resize(model.parameters().size());
+  std::iota(around.columns.begin(), around.columns.end(), 0);
+  const auto at_nominal = bag.run(model.nominal(), context, trying);
+  if (!at_nominal)
+    throw Error(ErrorCode::could_not_solve, "",
+                "The simulation fails with the set-up's own parameters: check mould and set-up.");
+  around.expected = at_nominal->front();
+  Probing nominal, other;
+  {
+    const auto span = context.span(0, 0.45, trying);
+    nominal = probe_around(bag, model.nominal(), *at_nominal, around.columns, context, trying);
+  }
+  {
+    const auto span = context.span(0.45, 0.9, trying);
+    const Eigen::VectorXd u = stiffer(model);
+    const auto at_stiffer = bag.run(u, context, trying);
+    other = at_stiffer ? probe_around(bag, u, *at_stiffer, around.columns, context, trying) : nominal;
+  }
+  const auto span = context.span(0.9, 1, trying);
+  around.about_stiffer = other.sensitivities.front();
+  const std::vector<int> discrepancies = model.parameters_with(ParameterRole::discrepancy);
+  auto movements =
+      movements_of(model, discrepancies, sensitivities_of(discrepancies, nominal.sensitivities, around.columns));
+  // As in a diagnosis: where the simulation leaps, a point tells less.
+  for (const Probing* probing : {&nominal, &other})
+    for (const Eigen::MatrixXd& bend : probing->bends.front()) movements.front().push_back(std::sqrt(0.5) * bend);
+  const Eigen::VectorXd weights = model.measurements().front().sigma.array().square().inverse();
+  std::vector<Eigen::VectorXd> all{weights};
+  for (std::size_t object = 1; object < model.measurements().size(); ++object)
+    all.push_back(Eigen::VectorXd::Zero(model.measurements()[object].measured.rows()));
+  around.precisions = precisions_of(model, all, movements).front();
+  around.about_nominal =
+      at_usual_strengths(bag, *at_nominal, std::move(nominal.sensitivities), context, trying).front();
+  return around;
+}
+
+/// Of some rows: what a diagnosis would have to go by.
+class Outlook {
+ public:
+  Outlook(const ForwardModel& model, const Surroundings& around, const std::vector<Eigen::Index>& rows)
+      : model_(model), around_(around) {
+    const Measurement& all = model.measurements().front();
+    Measurement part;
+    part.place = all.place(rows, Eigen::all);
+    part.extent_mm = all.extent_mm;
+    const StructuredMisfit misfit(part, around.precisions(rows, Eigen::all), {model.known_misfit()});
+    const auto count = static_cast<Eigen::Index>(rows.size());
+    std::vector<Eigen::MatrixXd> columns;
+    for (const Sensitivities* s : {&around.about_stiffer, &around.about_nominal})
+      for (const Eigen::MatrixXd& column : *s) columns.emplace_back(column(rows, Eigen::all));
+    const Eigen::MatrixXd zero = Eigen::MatrixXd::Zero(count, all.measured.cols());
+    both_ = misfit.gram(zero, columns);
+    nominal_ = misfit.gram(zero, std::span(columns).subspan(around.columns.size()));
+  }
+
+  /// Mean of both materials, nats.
+  double information() const {
+    const auto k = static_cast<Eigen::Index>(around_.columns.size());
+    const Eigen::MatrixXd& G = both_.gram.front();
+    return 0.5 * (information_about_causes(model_, G.block(1, 1, k, k)) +
+                  information_about_causes(model_, G.block(1 + k, 1 + k, k, k)));
+  }
+  double visible(int cause) const { return min_visible_strength(model_, both_, 0, around_.columns, cause); }
+  double alike(int a, int b) const { return similarity(model_, nominal_, 0, around_.columns, a, b); }
+
+ private:
+  const ForwardModel& model_;
+  const Surroundings& around_;
+  GramByStructure both_, nominal_;
+};
+
+std::vector<CauseOutlook> outlooks(const ForwardModel& model, const Outlook& with_rows, const Outlook& with_all) {
+  const auto count = static_cast<int>(model.causes().size());
+  std::vector<CauseOutlook> list;
+  for (int cause = 0; cause < count; ++cause) {
+    CauseOutlook one;
+    one.cause = cause;
+    const int first = model.causes()[static_cast<std::size_t>(cause)].parameters.front();
+    one.usual_strength = model.parameters()[static_cast<std::size_t>(first)].prior_sd;
+    one.min_visible_strength = with_rows.visible(cause);
+    one.best_visible_strength = with_all.visible(cause);
+    for (int other = 0; other < count; ++other) {
+      if (other == cause) continue;
+      const double alike = with_rows.alike(cause, other);
+      if (one.most_alike < 0 || alike > one.similarity) one.most_alike = other, one.similarity = alike;
+    }
+    list.push_back(one);
+  }
+  return list;
+}
+
+}  // namespace
+
+MeasuringPlan plan_measuring(SimulationBag& bag, const MeasuringPlanOptions& options, Context& context) {
+  const ForwardModel& model = bag.model();
+  const Measurement& m = model.measurements().front();
+  const Eigen::Index n = m.place.rows();
+  Surroundings around;
+  {
+    const auto span = context.span(0, 0.9, trying);
+    around = look_around(bag, context);
+  }
+  const auto span = context.span(0.9, 1, "Choosing points");
+  MeasuringPlan plan;
+  plan.expected = around.expected;
+  std::array<PointInformation, 2> information{
+      PointInformation(model, around.about_stiffer, around.precisions, model.known_misfit()),
+      PointInformation(model, around.about_nominal, around.precisions, model.known_misfit())};
+  const auto total = [&] { return 0.5 * (information[0].total() + information[1].total()); };
+  const auto measure = [&](Eigen::Index row) {
+    for (PointInformation& one : information) one.measure(row);
+  };
+  std::vector<Eigen::Index> rows;
+  for (Eigen::Index i = 0; i < options.measured; ++i) {
+    measure(i);
+    rows.push_back(i);
+  }
+  plan.information_of_measured = total();
+  while (static_cast<int>(plan.chosen.size()) < options.points) {
+    context.check_cancelled();
+    Eigen::Index best = -1;
+    double best_gain = 0;
+    for (Eigen::Index i = options.measured; i < n; ++i) {
+      const bool near = std::any_of(rows.begin(), rows.end(), [&](Eigen::Index row) {
+        return row == i || (m.place.row(row) - m.place.row(i)).norm() < options.min_distance;
+      });
+      if (near) continue;
+      const double gain = 0.5 * (information[0].gain(i) + information[1].gain(i));
+      if (gain > best_gain * (1 + tie)) best = i, best_gain = gain;
+    }
+    if (best < 0) break;
+    measure(best);
+    rows.push_back(best);
+    plan.chosen.push_back(best);
+    plan.information.push_back(total());
+    context.progress(static_cast<double>(plan.chosen.size()) / options.points);
+  }
+  std::vector<Eigen::Index> all(static_cast<std::size_t>(n));
+  std::iota(all.begin(), all.end(), 0);
+  const Outlook with_all(model, around, all);
+  plan.information_of_all = with_all.information();
+  if (!rows.empty()) plan.causes = outlooks(model, Outlook(model, around, rows), with_all);
+  return plan;
+}
+
+}  // namespace formwright

@@ -236,11 +236,14 @@ std::string diagnosis_page(const DiagnosisReport& report) {
 
   // Of a cause that does not explain the data nothing is advised.
   if (!d.verdict.empty() && d.reading != Reading::unknown) {
-    html += "<h2>What to do</h2>";
+    html += "<h2>What happened, and what to do</h2>";
     for (const int cause : d.verdict) {
       const Cause& c = model.causes()[static_cast<std::size_t>(cause)];
-      html += "<div class=\"panel\"><b>" + xml_attribute(c.label) + "</b><p>" + xml_attribute(c.explanation) +
-              "</p><p>" + xml_attribute(c.remedy) + "</p></div>";
+      const auto finding =
+          std::find_if(d.causes.begin(), d.causes.end(), [&](const CauseFinding& f) { return f.cause == cause; });
+      const std::string words = finding == d.causes.end() ? "" : model.in_words(cause, finding->values);
+      html += "<div class=\"panel\"><b>" + xml_attribute(c.label) + "</b><p>" +
+              xml_attribute(words.empty() ? c.explanation : words) + "</p><p>" + xml_attribute(c.remedy) + "</p></div>";
     }
   }
   for (const SeparatedPair& s : report.separations) {

@@ -127,6 +127,7 @@ Json diagnosis_json(const DiagnosisReport& report) {
                               {"log_evidence", f.log_evidence},
                               {"min_visible_strength", visible},
                               {"least_visible", visible},  // the name of version 0.1
+                              {"in_words", f.fitted ? model.in_words(f.cause, f.values) : ""},
                               {"explanation", cause.explanation},
                               {"remedy", cause.remedy}});
   }

@@ -72,6 +72,9 @@ class ForwardModel {
   virtual const ForwardModel* cheaper() const { return nullptr; }
   /// The same, simulated more finely, for what this one does not decide; null where there is no such model.
   virtual const ForwardModel* finer() const { return nullptr; }
+  /// What happened, in a sentence, where `cause` has these values of its parameters; empty where the model has no words
+  /// for it.
+  virtual std::string in_words(int /*cause*/, const std::vector<double>& /*values*/) const { return {}; }
   /// Size of structured misfit (in the measurement's unit) that the model is known to have without any fault of the
   /// machine.
   virtual double known_misfit() const = 0;

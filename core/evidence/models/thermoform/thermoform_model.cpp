@@ -10,6 +10,7 @@
 #include "base/format.h"
 #include "base/sha256.h"
 #include "evidence/fit/noise_model.h"
+#include "evidence/models/thermoform/cause_words.h"
 #include "thermoform/sheet/sheet_mesh.h"
 
 namespace formwright {
@@ -330,6 +331,10 @@ Eigen::MatrixXd ThermoformModel::predict(int object, const Eigen::VectorXd& u, c
   raised.mesh.V.col(2).array() += plate_z;
   return predict_measured(raised, places, own.setup.measured_surface, o.clamp_height_mm + plate_z, o.sheet_thickness_mm,
                           measurement_effects(u), plate_z);
+}
+
+std::string ThermoformModel::in_words(int cause, const std::vector<double>& values) const {
+  return thermoform_cause_in_words(causes_[static_cast<std::size_t>(cause)].name, values);
 }
 
 MachineProfile ThermoformModel::profile_at(const Eigen::VectorXd& u) const {

@@ -50,6 +50,7 @@ class ThermoformModel : public ForwardModel {
   Eigen::MatrixXd predict(int object, const Eigen::VectorXd& u, const Context& context) const override;
   bool claim(int object, const Eigen::VectorXd& u, const Context& context) const override;
   double known_misfit() const override { return 0.08; }
+  std::string in_words(int cause, const std::vector<double>& values) const override;
   /// On a quarter of the triangles, where that leaves enough of them.
   const ForwardModel* cheaper() const override { return cheaper_.get(); }
   /// On twice the triangles, where these are no more than most are content with.

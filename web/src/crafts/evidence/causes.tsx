@@ -4,19 +4,17 @@ import { useSignal } from '@preact/signals';
 import { useId } from 'preact/hooks';
 import { Icon, formatNumber, withUnit } from '../../ui';
 import type { Cause, Diagnosis } from './diagnosis';
-import { formatEstimate, minListed, oddsAgainstNone, percent, readingWords } from './diagnosis';
+import { formatEstimate, minListed, oddsAgainstNone, percent } from './diagnosis';
 import type { EvidenceSession } from './evidence_session';
 import { comparing } from './evidence_document';
 
 export function Causes({ session, diagnosis }: { session: EvidenceSession; diagnosis: Diagnosis }) {
   const { answers, causes, reading, named, alike } = diagnosis;
-  const words = readingWords(diagnosis);
   const shown = causes.filter(({ name, probability }) => named.includes(name) || probability >= minListed);
   return (
     <section class="section causes" aria-label="Causes of the difference">
       <h3>Causes of the difference</h3>
       {reading === 'none' || reading === 'unknown' ? <p class="reading">{diagnosis.sentence}</p> : null}
-      {words ? <p>{words}</p> : null}
       {answers.length > 0 ? (
         <ol class="answers" aria-label="What it may be">
           {answers.map(({ label, probability }) => (

@@ -2,11 +2,13 @@
 import { describe, expect, it } from 'vitest';
 import type { Report } from '../../jobs/contract';
 import { formatEstimate, oddsAgainstNone, percent, readDiagnosis, readingWords } from './diagnosis';
+import { sureWords, whyWords } from './story';
 
 const report: Report = {
   verdict: ['heating_gradient'],
   reading: 'cannot_separate',
   sentence: 'Uneven heating, 60 %.',
+  doubts: ['Another explanation is nearly as likely.'],
   answers: [
     { causes: ['heating_gradient'], unknown_cause: false, label: 'Uneven heating', probability: 0.6 },
     { causes: ['thickness_wedge'], unknown_cause: false, label: 'Wedge', probability: 0.388 },
@@ -25,6 +27,7 @@ const report: Report = {
       interval: [0.38, 0.42],
       values: { heating_gradient_x: 0.4 },
       remedy: 'Turn the heater.',
+      in_words: 'The sheet was hotter on the left.',
     },
     {
       name: 'thickness_wedge',
@@ -72,6 +75,22 @@ describe('a diagnosis', () => {
     expect(diagnosis.failed).toEqual([
       { label: 'Vacuum too weak', causes: ['weak_vacuum'], why: 'It would fit, but.' },
     ]);
+  });
+
+  it('is told: what happened, how sure, and what speaks against it', () => {
+    const diagnosis = readDiagnosis(report);
+    expect(whyWords(diagnosis)).toBe(
+      'The sheet was hotter on the left. “Uneven heating” and “Wedge” explain this measurement equally well.',
+    );
+    expect(sureWords(diagnosis)).toEqual([
+      '60\u2009% for “Uneven heating”.',
+      'On points that were left out of the fit, the error falls from 0.28\u2009mm to 0.14\u2009mm.',
+      'On the object kept for checking, the error falls from 1.0\u2009mm to 0.50\u2009mm.',
+      'Another explanation is nearly as likely.',
+    ]);
+    const nothing = readDiagnosis({ ...report, reading: 'none', verdict: ['none'], doubts: [] });
+    expect(whyWords(nothing)).toMatch(/^Nothing to fix/);
+    expect(sureWords(nothing)).toHaveLength(1);
   });
 
   it('says in words what looks alike and what would tell', () => {

@@ -19,6 +19,8 @@ export interface Cause {
   readonly strength: Estimate;
   readonly unit: string;
   readonly values: Readonly<Record<string, number>>;
+  /** What happened, in a sentence; empty where the core has none. */
+  readonly inWords: string;
   readonly remedy: string;
 }
 
@@ -42,6 +44,8 @@ type Reading = 'none' | 'cause' | 'cannot_separate' | 'unknown';
 export interface Diagnosis {
   readonly reading: Reading;
   readonly sentence: string;
+  /** Why the answer may be wrong, or not all. */
+  readonly doubts: readonly string[];
   /** The most probable first; those too small to list are one. */
   readonly answers: readonly Answer[];
   /** Causes that would fit but failed a check, and why. */
@@ -119,6 +123,7 @@ export function readDiagnosis(report: Report): Diagnosis {
         number(value),
       ]),
     ),
+    inWords: text(cause['in_words']),
     remedy: text(cause['remedy']),
   }));
   const labelOf = (name: string) => causes.find((cause) => cause.name === name)?.label ?? name;
@@ -127,6 +132,7 @@ export function readDiagnosis(report: Report): Diagnosis {
   return {
     reading: (text(report['reading']) || 'none') as Reading,
     sentence: text(report['sentence']),
+    doubts: sentences(report, 'doubts'),
     answers: answersOf(report),
     failed: list(report['failed']).map((one) => ({
       label: text(one['label']),

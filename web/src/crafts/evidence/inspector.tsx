@@ -11,6 +11,7 @@ import type { MeasuredObject, Use } from './evidence_document';
 import { evidence } from './evidence_document';
 import type { EvidenceSession } from './evidence_session';
 import { MainButton } from './main_button';
+import { Story } from './story';
 
 export interface InspectorProps {
   readonly session: EvidenceSession;
@@ -73,6 +74,7 @@ export function Inspector({ session, onChooseFile }: InspectorProps) {
         </section>
         {diagnosis ? (
           <>
+            <Story session={session} diagnosis={diagnosis} />
             <div class="section">
               <Switch
                 label="Show the simulation with this cause included"

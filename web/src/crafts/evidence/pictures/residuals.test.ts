@@ -7,6 +7,7 @@ import {
   distancesOf,
   heightDifferenceOf,
   histogram,
+  movedBy,
   nearestTo,
   neighbourOf,
   niceDown,
@@ -15,6 +16,7 @@ import {
   readResiduals,
   scaleFor,
   simulatedIn,
+  worstRegion,
 } from './residuals';
 
 const diagnosed = [
@@ -96,5 +98,30 @@ describe('residuals', () => {
     expect(neighbourOf(residuals, 12, 1, 0)).toBe(13);
     expect(neighbourOf(residuals, 12, 0, 1)).toBe(17);
     expect(neighbourOf(residuals, 0, -1, 0)).toBe(0);
+  });
+
+  it('says where the sheet is off most', () => {
+    const even = grid(9);
+    const at = (column: number, row: number): Residuals => ({
+      ...even,
+      base: Float64Array.from(even.base, (value, i) => {
+        const point = Math.floor(i / 3);
+        const here = Math.floor((point % 9) / 3) === column && Math.floor(Math.floor(point / 9) / 3) === row;
+        return i % 3 === 2 && here ? 9 : value;
+      }),
+    });
+    expect(worstRegion(at(0, 0), 'base')?.where).toBe('at the front left');
+    expect(worstRegion(at(2, 1), 'base')?.where).toBe('on the right');
+    expect(worstRegion(at(1, 1), 'base')?.where).toBe('in the middle');
+    expect(worstRegion(at(1, 2), 'base')?.where).toBe('at the back');
+    expect(worstRegion(at(2, 2), 'base')?.mean_mm).toBeCloseTo(Math.hypot(1, 2, 6), 6);
+    expect(worstRegion(grid(2), 'base')).toBeNull();
+  });
+
+  it('says how far a cause moves the points', () => {
+    expect(movedBy(grid(3))).toBeNull();
+    const base = grid(2);
+    const extended = Float64Array.from(base.base, (value, i) => (i === 0 ? value + 4 : value));
+    expect(movedBy({ ...base, extended })).toEqual({ mean_mm: 1, largest_mm: 4 });
   });
 });

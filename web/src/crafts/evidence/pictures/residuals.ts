@@ -186,3 +186,56 @@ export function neighbourOf(residuals: Residuals, from: number, dx: number, dy: 
   }
   return best;
 }
+
+const rowNames = ['at the front', 'in the middle', 'at the back'];
+const columnNames = ['left', '', 'right'];
+
+/** Of nine fields of the sheet, as far as it was measured, the one with the largest mean distance, in words; null where the
+ *  points are few or lie in one place. */
+export function worstRegion(
+  residuals: Residuals,
+  model: Model,
+): { readonly where: string; readonly mean_mm: number } | null {
+  const distances = distancesOf(residuals, model);
+  const { sheet, count } = residuals;
+  const range = [0, 1].map((k) => {
+    const values = Array.from({ length: count }, (_, i) => sheet[2 * i + k] ?? 0);
+    // Not spread into arguments: a scan may have a hundred thousand points.
+    return [
+      values.reduce((a, b) => Math.min(a, b), Infinity),
+      values.reduce((a, b) => Math.max(a, b), -Infinity),
+    ] as const;
+  });
+  if (count < 6 || range.some(([low, high]) => !(high > low))) return null;
+  const fields = Array.from({ length: 9 }, () => ({ sum: 0, points: 0 }));
+  for (let i = 0; i < count; ++i) {
+    const [column, row] = range.map(([low, high], k) =>
+      Math.min(2, Math.floor((3 * ((sheet[2 * i + k] ?? 0) - low)) / (high - low))),
+    );
+    const field = fields[3 * (row ?? 0) + (column ?? 0)];
+    if (field === undefined) continue;
+    field.sum += distances[i] ?? 0;
+    ++field.points;
+  }
+  const means = fields.map(({ sum, points }) => (points === 0 ? 0 : sum / points));
+  const worst = means.indexOf(Math.max(...means));
+  const [row, column] = [Math.floor(worst / 3), worst % 3];
+  const where =
+    row === 1 && column !== 1
+      ? `on the ${columnNames[column] ?? ''}`
+      : `${rowNames[row] ?? ''} ${columnNames[column] ?? ''}`.trim();
+  return { where, mean_mm: means[worst] ?? 0 };
+}
+
+/** How far the extended simulation has the points from where the calibrated one has them; null without one. */
+export function movedBy({
+  base,
+  extended,
+  count,
+}: Residuals): { readonly mean_mm: number; readonly largest_mm: number } | null {
+  if (extended === null || count === 0) return null;
+  const moved = Float64Array.from({ length: count }, (_, i) =>
+    Math.hypot(...[0, 1, 2].map((k) => (extended[3 * i + k] ?? 0) - (base[3 * i + k] ?? 0))),
+  );
+  return { mean_mm: meanOf(moved), largest_mm: moved.reduce((a, b) => Math.max(a, b), 0) };
+}

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A diagnosis told in five steps: how far off, where, why, what to do, how sure. Figures and what was not needed are
+// folded away below it.
+import type { ComponentChildren } from 'preact';
+import { formatNumber, withUnit } from '../../ui';
+import type { Diagnosis, Gain } from './diagnosis';
+import { percent, readingWords } from './diagnosis';
+import type { EvidenceSession } from './evidence_session';
+import type { Residuals } from './pictures/residuals';
+import { distancesOf, meanOf, movedBy, worstRegion } from './pictures/residuals';
+
+const length = (value_mm: number): string => withUnit(formatNumber(value_mm, 2), 'mm');
+
+export function Story({ session, diagnosis }: { session: EvidenceSession; diagnosis: Diagnosis }) {
+  const look = session.look.value;
+  const residuals = look?.kind === 'diagnosis' ? look.residuals : null;
+  return (
+    <section class="section" aria-label="What was found">
+      <h3>What was found</h3>
+      <ol class="story">
+        <Step title="How far off">
+          {residuals
+            ? `Measured and simulated sheet are ${length(meanOf(distancesOf(residuals, 'base')))} apart on average, with the material calibrated. Noise alone would leave ${length(diagnosis.noiseFloor_mm)}.`
+            : `Noise alone would leave ${length(diagnosis.noiseFloor_mm)}.`}
+        </Step>
+        {residuals ? <Step title="Where">{whereWords(residuals)}</Step> : null}
+        <Step title="Why">{whyWords(diagnosis)}</Step>
+        <Step title="What to do">
+          {todo(diagnosis).map((sentence) => (
+            <span key={sentence} class="story-line">
+              {sentence}
+            </span>
+          ))}
+          {residuals && diagnosis.reading !== 'none' && diagnosis.reading !== 'unknown'
+            ? printWords(residuals)
+            : null}
+        </Step>
+        <Step title="How sure">
+          {sureWords(diagnosis).map((sentence) => (
+            <span key={sentence} class="story-line">
+              {sentence}
+            </span>
+          ))}
+        </Step>
+      </ol>
+    </section>
+  );
+}
+
+function Step({ title, children }: { title: string; children: ComponentChildren }) {
+  return (
+    <li>
+      <h4>{title}</h4>
+      <p>{children}</p>
+    </li>
+  );
+}
+
+function whereWords(residuals: Residuals): string {
+  const worst = worstRegion(residuals, 'base');
+  return worst === null
+    ? 'The points lie too close together to say.'
+    : `Most ${worst.where}, ${length(worst.mean_mm)} on average there.`;
+}
+
+/** One sentence for each named cause. */
+export function whyWords(diagnosis: Diagnosis): string {
+  const { named, causes, reading } = diagnosis;
+  if (reading === 'none' || reading === 'unknown') return readingWords(diagnosis);
+  const said = named.flatMap((name) => {
+    const cause = causes.find((one) => one.name === name);
+    return cause ? [cause.inWords || `${cause.label}.`] : [];
+  });
+  return [...said, readingWords(diagnosis)].filter(Boolean).join(' ');
+}
+
+function todo({ reading, named, causes }: Diagnosis): string[] {
+  if (reading === 'none') return ['Nothing: use the calibrated material for the next print.'];
+  if (reading === 'unknown')
+    return [
+      'Nothing is advised for a cause that does not explain the data. Measure a second object of another shape.',
+    ];
+  return causes.filter(({ name }) => named.includes(name)).map(({ remedy }) => remedy);
+}
+
+function printWords(residuals: Residuals): string {
+  const moved = movedBy(residuals);
+  return moved === null
+    ? ''
+    : `Or print for the machine as it is: the simulation with this cause puts the features of the next print ${length(moved.mean_mm)} elsewhere on average, up to ${length(moved.largest_mm)}.`;
+}
+
+const gainWords = ({ title, before, after }: Gain): string =>
+  `${title === 'Points left out' ? 'On points that were left out of the fit' : 'On the object kept for checking'}, the error ${
+    after.value < before.value ? 'falls' : 'goes'
+  } from ${length(before.value)} to ${length(after.value)}.`;
+
+/** The most probable answer, what was not used for the fit, and what speaks against it. */
+export function sureWords({ answers, gains, doubts, reading }: Diagnosis): string[] {
+  const first = answers[0];
+  return [
+    ...(first ? [`${percent(first.probability)} for “${first.label}”.`] : []),
+    ...(reading === 'none' ? [] : gains.map(gainWords)),
+    ...doubts,
+  ];
+}

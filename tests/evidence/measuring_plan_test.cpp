@@ -204,7 +204,7 @@ TEST_CASE("MeasuringPlan.VisibleStrengthInClosedForm") {
     CHECK_THAT(plan.causes.front().min_visible_strength, WithinRel(4 * 0.1 / std::sqrt(n), 1e-9));
     CHECK_THAT(plan.causes.front().best_visible_strength, WithinRel(4 * 0.1 / std::sqrt(n), 1e-9));
     CHECK(plan.causes.front().usual_strength == 2);
-    CHECK(plan.causes.front().most_alike == -1);
+    CHECK(plan.causes.front().closest_cause == -1);
     CHECK_THAT(plan.information_of_measured, WithinAbs(plan.information_of_all, 1e-9));
   }
 }

@@ -123,7 +123,7 @@ std::vector<CauseOutlook> outlooks(const ForwardModel& model, const Outlook& wit
     for (int other = 0; other < count; ++other) {
       if (other == cause) continue;
       const double alike = with_rows.alike(cause, other);
-      if (one.most_alike < 0 || alike > one.similarity) one.most_alike = other, one.similarity = alike;
+      if (one.closest_cause < 0 || alike > one.similarity) one.closest_cause = other, one.similarity = alike;
     }
     list.push_back(one);
   }

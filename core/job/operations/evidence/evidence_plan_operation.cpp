@@ -133,8 +133,8 @@ Json causes_json(const ForwardModel& model, const MeasuringPlan& plan) {
          {"usual_strength", one.usual_strength},
          {"min_visible_strength", finite(one.min_visible_strength)},
          {"best_visible_strength", finite(one.best_visible_strength)},
-         {"most_alike",
-          one.most_alike < 0 ? Json(nullptr) : Json(model.causes()[static_cast<std::size_t>(one.most_alike)].name)},
+         {"closest_cause",
+          one.closest_cause < 0 ? Json(nullptr) : Json(model.causes()[static_cast<std::size_t>(one.closest_cause)].name)},
          {"similarity", one.similarity}});
   }
   return list;

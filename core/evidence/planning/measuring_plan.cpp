@@ -18,7 +18,7 @@ namespace formwright {
 namespace {
 
 constexpr const char* trying = "Trying each cause";
-constexpr double tie = 1e-6;  // of a gain: mirrored points tell the same, and the first of them is taken everywhere
+constexpr double tie = 0.01;  // of a gain: mirrored points tell the same, and the first of them is taken on any machine
 
 /// The model about two materials, and how well each point would be known.
 struct Surroundings {
@@ -159,17 +159,18 @@ MeasuringPlan plan_measuring(SimulationBag& bag, const MeasuringPlanOptions& opt
   plan.information_of_measured = total();
   while (static_cast<int>(plan.chosen.size()) < options.points) {
     context.check_cancelled();
-    Eigen::Index best = -1;
-    double best_gain = 0;
+    std::vector<double> gains(static_cast<std::size_t>(n), 0);
     for (Eigen::Index i = options.measured; i < n; ++i) {
       const bool near = std::any_of(rows.begin(), rows.end(), [&](Eigen::Index row) {
         return row == i || (m.place.row(row) - m.place.row(i)).norm() < options.min_distance;
       });
-      if (near) continue;
-      const double gain = 0.5 * (information[0].gain(i) + information[1].gain(i));
-      if (gain > best_gain * (1 + tie)) best = i, best_gain = gain;
+      if (!near) gains[static_cast<std::size_t>(i)] = 0.5 * (information[0].gain(i) + information[1].gain(i));
     }
-    if (best < 0) break;
+    const double largest = *std::max_element(gains.begin(), gains.end());
+    if (!(largest > 0)) break;
+    const Eigen::Index best =
+        std::find_if(gains.begin(), gains.end(), [&](double gain) { return gain >= (1 - tie) * largest; }) -
+        gains.begin();
     measure(best);
     rows.push_back(best);
     plan.chosen.push_back(best);

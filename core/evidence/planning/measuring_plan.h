@@ -19,7 +19,7 @@ struct CauseOutlook {
   double usual_strength = 0;         // Cause::unit: how strong it may well be (the prior of its first parameter)
   double min_visible_strength = 0;   // with the points of the plan; infinite where the material imitates the cause
   double best_visible_strength = 0;  // with all candidates
-  int closest_cause = -1;               // the cause that does most nearly the same to these points; -1 where it is alone
+  int closest_cause = -1;            // the cause that does most nearly the same to these points; -1 where it is alone
   double similarity = 0;             // of that one, 1: the same
 
   bool shows() const { return min_visible_strength <= usual_strength; }

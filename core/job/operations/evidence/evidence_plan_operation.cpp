@@ -125,17 +125,17 @@ Json causes_json(const ForwardModel& model, const MeasuringPlan& plan) {
   Json list = Json::array();
   for (const CauseOutlook& one : plan.causes) {
     const Cause& cause = model.causes()[static_cast<std::size_t>(one.cause)];
-    list.push_back(
-        {{"name", cause.name},
-         {"label", cause.label},
-         {"unit", cause.unit},
-         {"shows", one.shows()},
-         {"usual_strength", one.usual_strength},
-         {"min_visible_strength", finite(one.min_visible_strength)},
-         {"best_visible_strength", finite(one.best_visible_strength)},
-         {"closest_cause",
-          one.closest_cause < 0 ? Json(nullptr) : Json(model.causes()[static_cast<std::size_t>(one.closest_cause)].name)},
-         {"similarity", one.similarity}});
+    list.push_back({{"name", cause.name},
+                    {"label", cause.label},
+                    {"unit", cause.unit},
+                    {"shows", one.shows()},
+                    {"usual_strength", one.usual_strength},
+                    {"min_visible_strength", finite(one.min_visible_strength)},
+                    {"best_visible_strength", finite(one.best_visible_strength)},
+                    {"closest_cause", one.closest_cause < 0
+                                          ? Json(nullptr)
+                                          : Json(model.causes()[static_cast<std::size_t>(one.closest_cause)].name)},
+                    {"similarity", one.similarity}});
   }
   return list;
 }

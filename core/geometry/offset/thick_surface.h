@@ -10,7 +10,7 @@ namespace formwright {
 struct ThickSurfaceOptions {
   double wall_mm = 2;
   double opening_mm = 1;            // alpha: gaps and hollows with narrower openings than twice this are filled
-  int max_vertices = 2'000'000;     // of the result; 1 kB each while it is made
+  int max_vertices = 1'000'000;  // that are placed; bounds time and memory
 };
 
 struct ThickSurface {

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
 
+#include "base/error.h"
 #include "geometry/booleans/booleans.h"
 #include "geometry/mesh/adjacency.h"
 #include "geometry/mesh/file_grid.h"
@@ -14,6 +16,7 @@
 namespace formwright {
 namespace {
 
+constexpr int max_front_triangles = 3'000'000;  // 0.6 kB each while the solid is joined and cut
 constexpr double opening_share = 0.5;  // of the wall: the wrap then reaches 13 % farther than the wall
 // Of the plate's diagonal and the relief's height: a wall thinner than this is made of triangles of this size, which
 // bounds their number.
@@ -42,6 +45,11 @@ TriangleMesh front_solid(const Positions& moved, const Triangles& F, double kapp
       make_height_map({straight, F}, options.size_mm, options.plate, options.pixel_mm, space, context);
   const double front_mm = options.plate_mm + options.below_mm;  // of the plate, above its back
   TriangleMesh solid = make_solid(map, front_mm + map.floor_mm, options.tolerance_mm, context);
+  if (solid.F.rows() > max_front_triangles)
+    throw Error(ErrorCode::invalid_input, "pixel_mm",
+                "The front of the thick surface would have " + std::to_string(solid.F.rows()) +
+                    " triangles, and at most 3 million can be joined to its plate: raise the detail spacing (pixel_mm) "
+                    "or lower the width.");
   for (Eigen::Index i = 0; i < solid.V.rows(); ++i) {
     if (solid.V(i, 2) == 0) continue;  // the plate's back
     const double height_mm = solid.V(i, 2) - front_mm, narrowing = rays.narrowing(height_mm);

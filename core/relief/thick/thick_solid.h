@@ -34,7 +34,8 @@ struct ThickSolid {
 /// homography (x, y, z) -> (x, y, z) / (1 + kappa z), which makes the rays parallel and keeps planes planes, and is
 /// brought back by its inverse. Then: front solid ∩ (wall ∪ plate), by exact booleans.
 /// @param moved  view coordinates
-/// Throws Error: invalid_input ("pixel_mm" as make_height_map, "wall_mm" as thick_surface), could_not_solve, cancelled.
+/// Throws Error: invalid_input ("pixel_mm" as make_height_map and above 3 million triangles, "wall_mm" as
+/// thick_surface), could_not_solve, cancelled.
 ThickSolid thick_solid(const Positions& moved, const Triangles& F, double kappa, const ThickSolidOptions& options,
                        Context& context);
 

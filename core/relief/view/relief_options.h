@@ -230,7 +230,7 @@ struct ReliefOptions {
           "Filled is solid from the relief down to its plate. Thick surface gives the relief a wall instead: what stands free of the plate stays open behind, as seen from the side. It needs a flat base.")
           .group("Output"),
       parameter(
-          "wall_mm", &ReliefOptions::wall_mm, "Wall", unit::mm, 0.1, 100,
+          "wall_mm", &ReliefOptions::wall_mm, "Wall thickness", unit::mm, 0.1, 100,
           "Thickness of the wall behind the surface, measured along the line of sight. Thicker is stronger and closes narrow gaps; 2 mm is usual for printing.")
           .group("Output")
           .only_with("solid", "thick")

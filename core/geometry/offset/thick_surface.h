@@ -9,12 +9,12 @@ namespace formwright {
 
 struct ThickSurfaceOptions {
   double wall_mm = 2;
-  double opening_mm = 1;            // alpha: gaps and hollows with narrower openings than twice this are filled
+  double opening_mm = 1;         // alpha: gaps and hollows with narrower openings than twice this are filled
   int max_vertices = 1'000'000;  // that are placed; bounds time and memory
 };
 
 struct ThickSurface {
-  TriangleMesh mesh;  // closed, 2-manifold, without self-intersections, faces outwards
+  TriangleMesh mesh;    // closed, 2-manifold, without self-intersections, faces outwards
   double reach_mm = 0;  // how far its vertices are from the surface, within 1 %
 };
 

@@ -32,8 +32,8 @@ struct ThickSolid {
 ///
 /// The front is the nearest surface along a grid of rays from the viewpoint. It is sampled straight down after the
 /// homography (x, y, z) -> (x, y, z) / (1 + kappa z), which makes the rays parallel and keeps planes planes, and is
-/// brought back by its inverse. Then: front solid ∩ (wall ∪ plate), by exact booleans.
-/// @param moved  view coordinates
+/// brought back by its inverse. Then: front solid ∩ (wall ∪ plate), by exact booleans, within the plate's sides.
+/// @param moved  view coordinates; what is seen beside the plate is cut off
 /// Throws Error: invalid_input ("pixel_mm" as make_height_map and above 3 million triangles, "wall_mm" as
 /// thick_surface), could_not_solve, cancelled.
 ThickSolid thick_solid(const Positions& moved, const Triangles& F, double kappa, const ThickSolidOptions& options,

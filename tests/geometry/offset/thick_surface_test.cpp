@@ -34,7 +34,8 @@ TriangleMesh dome(double radius_mm, int levels) {
   mesh.V *= radius_mm;
   Eigen::Index kept = 0;
   for (Eigen::Index f = 0; f < mesh.F.rows(); ++f)
-    if (mesh.V(mesh.F(f, 0), 2) + mesh.V(mesh.F(f, 1), 2) + mesh.V(mesh.F(f, 2), 2) > 0) mesh.F.row(kept++) = mesh.F.row(f);
+    if (mesh.V(mesh.F(f, 0), 2) + mesh.V(mesh.F(f, 1), 2) + mesh.V(mesh.F(f, 2), 2) > 0)
+      mesh.F.row(kept++) = mesh.F.row(f);
   mesh.F.conservativeResize(kept, 3);
   return mesh;
 }
@@ -73,8 +74,9 @@ TEST_CASE("ThickSurface.OfADomeConvergesInAlpha") {
 TEST_CASE("ThickSurface.HoldsTheWallEverywhere") {
   // Corners of all kinds, a crossing pair and an edge with three faces.
   Random random(7);
-  TriangleMesh soup = make_mesh({{0, 0, 0}, {30, 0, 0}, {0, 30, 5}, {20, 20, -10}, {10, 5, 20}, {5, 25, -8}, {25, 5, 12}},
-                                {{{0, 1, 2}}, {{1, 2, 3}}, {{2, 1, 4}}, {{5, 6, 0}}});
+  TriangleMesh soup =
+      make_mesh({{0, 0, 0}, {30, 0, 0}, {0, 30, 5}, {20, 20, -10}, {10, 5, 20}, {5, 25, -8}, {25, 5, 12}},
+                {{{0, 1, 2}}, {{1, 2, 3}}, {{2, 1, 4}}, {{5, 6, 0}}});
   for (const double opening : {0.5, 1.5}) {
     const double wall = 2;
     const ThickSurface made = thick(soup, wall, opening);
@@ -120,9 +122,7 @@ TEST_CASE("ThickSurface.RefusesWhatHasNoWall") {
   broken.V(3, 1) = std::numeric_limits<double>::infinity();
   CHECK_THAT(refusal([&] { thick(broken, 1, 1); }), ContainsSubstring("not finite"));
   Context context;
-  CHECK_THAT(refusal([&] {
-               thick_surface(mesh, {.wall_mm = 0.05, .opening_mm = 0.02, .max_vertices = 500}, context);
-             }),
+  CHECK_THAT(refusal([&] { thick_surface(mesh, {.wall_mm = 0.05, .opening_mm = 0.02, .max_vertices = 500}, context); }),
              ContainsSubstring("too fine"));
 }
 

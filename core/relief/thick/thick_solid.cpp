@@ -97,7 +97,6 @@ TriangleMesh lying_surface(const Positions& moved, const Triangles& F, double ka
   surface.V.col(0).array() += 0.5 * options.plate.width_mm;
   surface.V.col(1).array() += 0.5 * options.plate.height_mm;
   surface.V.col(2) *= -1;
-  // View axes are left-handed.
   return surface;
 }
 
@@ -173,7 +172,12 @@ ThickSolid thick_solid(const Positions& moved, const Triangles& F, double kappa,
       result.mesh = joined(shifts.at(attempt)).mesh();
       break;
     } catch (const Error& error) {
-      if (error.code() != ErrorCode::could_not_solve || attempt + 1 == shifts.size()) throw;
+      if (error.code() != ErrorCode::could_not_solve) throw;
+      if (attempt + 1 == shifts.size())
+        throw Error(
+            ErrorCode::could_not_solve, "wall_mm",
+            "Parts of the thick surface touch each other along an edge or at a point only, which no printable "
+            "solid may: change wall_mm or pixel_mm by a few hundredths of a millimetre, or make the solid filled.");
     }
   }
   result.mesh.V.col(2).array() += back_mm;

@@ -275,10 +275,10 @@ TriangleMesh thick_mesh(const SolvedRelief& solved, const ReliefOptions& options
                     " nothing else and would fall off: hold the outline to the base (outline_mm), or paint less of the "
                     "model free.");
   if (solid.hollows > 0)
-    notes.push_back("The solid encloses " + std::to_string(solid.hollows) +
-                    (solid.hollows == 1 ? " hollow" : " hollows") +
-                    ". A printer that lays down plastic leaves them empty; one that works in resin or powder traps it "
-                    "there unless you drill a hole through the plate.");
+    notes.push_back(
+        "The solid encloses " + std::to_string(solid.hollows) + (solid.hollows == 1 ? " hollow" : " hollows") +
+        ": empty from a printer that lays down plastic, full of resin or powder from others unless you drill "
+        "a hole through the plate.");
   return solid.mesh;
 }
 

@@ -22,7 +22,8 @@ test('a thick surface is exported closed, and keeps to what is painted', async (
 
   // Another base is refused, with the reason, until it is flat again.
   await page.getByRole('combobox', { name: 'Shape of the base' }).selectOption('Waves');
-  await expect(page.getByText(/A thick surface is joined to a flat base only/)).toBeVisible();
+  const reason = page.getByRole('region', { name: 'Output', exact: true }).getByRole('alert');
+  await expect(reason).toContainText('A thick surface is joined to a flat base only');
   await page.getByRole('combobox', { name: 'Shape of the base' }).selectOption('Flat');
   await expect(strip(page, 'Preview up to date')).toBeVisible();
 

@@ -336,8 +336,10 @@ Relief ReliefSolver::solve_within(const ReliefOptions& options, const DepthBound
   relief.normal_error = normal_error(frame_, F_, visibility_, relief.seen);
   if (in_steps) relief.pieces = cut_into_bands(frame_, F_, relief.qp.u, m, bounds, *borders, context);
   const bool own_bounds = in_steps || bounds.painted();
-  const Eigen::VectorXd linear = linear_compression(
-      frame_, own_bounds ? depth_bounds(frame_, visibility_, BaseSurface(), options, context) : bounds);
+  ReliefOptions even = options;
+  even.only_outline = false;
+  const Eigen::VectorXd linear =
+      linear_compression(frame_, own_bounds ? depth_bounds(frame_, visibility_, BaseSurface(), even, context) : bounds);
   relief.energy_linear = (*energy_)(linear);
   relief.seen_linear = frame_.moved(linear);
   relief.normal_error_linear = normal_error(frame_, F_, visibility_, relief.seen_linear);

@@ -29,7 +29,8 @@ void refuse_misses(const DepthBounds& bounds, int asked, const ReliefOptions& op
 }  // namespace
 
 DepthBounds depth_bounds(const ViewFrame& frame, const Visibility& visibility, const BaseSurface& base,
-                         const ReliefOptions& options, Context& context, const Painting& painting) {
+                         const ReliefOptions& options, Context& context, const Painting& given) {
+  const Painting painting = options.only_outline ? free_within_outline(given, visibility) : given;
   const auto n = static_cast<std::size_t>(frame.P.rows());
   const double thickness = options.thickness_mm / options.width_mm, carve = options.carve_depth_mm / options.width_mm;
   DepthBounds bounds;
@@ -43,7 +44,7 @@ DepthBounds depth_bounds(const ViewFrame& frame, const Visibility& visibility, c
   bounds.below = carve;
   const BaseBands* const bands = base.bands();
   if (bands != nullptr) bounds.groups = bands->count();
-  const double outline = options.outline_mm.value_or(INFINITY) / options.width_mm;
+  const double outline = options.outline_mm.value_or(options.only_outline ? 0 : INFINITY) / options.width_mm;
   const bool tied = outline < std::max(thickness, carve);
   const bool painted = bounds.above_of.size() > 0;
   bounds.even = base.is_flat() && !tied && !painted;

@@ -30,7 +30,8 @@ struct DepthBounds {
 
 /// From `thickness_mm` before the base to `carve_depth_mm` behind it, both along z, for the vertices that
 /// `bounded_vertices` says. On a base in steps or strips both are counted from the step or strip, along its normal.
-/// With `outline_mm` the outline keeps within that of the base, too. A vertex that is free has the bounds of the plane
+/// With `outline_mm` the outline keeps within that of the base, too; with `only_outline` it keeps to the base, and the
+/// rest is free as if it were painted so. A vertex that is free has the bounds of the plane
 /// z = 0. Throws Error{invalid_input}: rays miss the base and `base_misses` refuses that; none meets it; the base or
 /// the relief reaches more than half-way to the viewpoint. `painting`: of the same vertices. What it says of a vertex
 /// goes before the options, also where it is hidden. A vertex painted free may miss the base.

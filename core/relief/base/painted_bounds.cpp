@@ -15,6 +15,14 @@ double own_or(const Eigen::VectorXd& values, Eigen::Index vertex, double otherwi
 
 }  // namespace
 
+Painting free_within_outline(const Painting& painting, const Visibility& visibility) {
+  Painting result = painting;
+  result.region.resize(visibility.outline.size(), PaintedRegion::usual);
+  for (std::size_t i = 0; i < result.region.size(); ++i)
+    if (result.region[i] == PaintedRegion::usual && !visibility.outline[i]) result.region[i] = PaintedRegion::free;
+  return result;
+}
+
 void set_painted_room(const Painting& painting, const ReliefOptions& options, DepthBounds& bounds) {
   bounds.above_of = -bounds.nearest;
   bounds.below_of = bounds.farthest;

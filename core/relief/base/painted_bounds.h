@@ -5,6 +5,10 @@
 
 namespace formwright {
 
+/// `only_outline`, "we constrain only the visual hull vertices" (thesis, Fig. 3.10): what is not painted otherwise and
+/// does not belong to the outline is free.
+Painting free_within_outline(const Painting& painting, const Visibility& visibility);
+
 /// Before the base is looked for: fills `above_of` and `below_of`, gives painted vertices the limits of a flat base,
 /// and bounds those that are painted with limits, hidden ones too. A vertex painted free has the room of the rest.
 void set_painted_room(const Painting& painting, const ReliefOptions& options, DepthBounds& bounds);

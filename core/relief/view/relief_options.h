@@ -46,6 +46,14 @@ struct EnumNames<BaseMisses> {
   static constexpr std::array<std::string_view, 2> labels{"Refuse", "Leave free"};
 };
 
+/// What a relief is made of between its surface and its plate.
+enum class SolidKind { filled, thick };
+template <>
+struct EnumNames<SolidKind> {
+  static constexpr std::array<std::string_view, 2> names{"filled", "thick"};
+  static constexpr std::array<std::string_view, 2> labels{"Filled", "Thick surface"};
+};
+
 enum class Appearance { detail, balanced };
 template <>
 struct EnumNames<Appearance> {
@@ -99,9 +107,12 @@ struct ReliefOptions {
   std::optional<double> distance_mm;
   BoundedVertices bounded_vertices = BoundedVertices::all;
   std::optional<double> outline_mm;
+  bool only_outline = false;
   Appearance appearance = Appearance::detail;
   double hidden_weight = 1;
   bool depth_order = true;
+  SolidKind solid = SolidKind::filled;
+  double wall_mm = 2;
   double pixel_mm = 0.2;
   QpMethod method = QpMethod::automatic;
   bool compare_pictures = false;
@@ -204,11 +215,26 @@ struct ReliefOptions {
           .group("Shape")
           .slider(0.05, 5),
       parameter(
+          "only_outline", &ReliefOptions::only_outline, "Hold the outline only",
+          "Puts the outline of every separate part on the base and leaves what is inside it as deep as it looks best, up to half-way to the viewpoint. The thickness then does not count; painted places keep their own limits.")
+          .group("Shape")
+          .advanced(),
+      parameter(
           "appearance", &ReliefOptions::appearance, "Appearance",
           "Crisp detail keeps fine detail best and flattens broad forms. Detail and broad forms keeps soft, large forms too, so that the relief looks more like the model; it takes about twice as long.")
           .group("Shape"),
       hidden_weight_parameter(&ReliefOptions::hidden_weight),
       depth_order_parameter(&ReliefOptions::depth_order),
+      parameter(
+          "solid", &ReliefOptions::solid, "Solid",
+          "Filled is solid from the relief down to its plate. Thick surface gives the relief a wall instead: what stands free of the plate stays open behind, as seen from the side. It needs a flat base.")
+          .group("Output"),
+      parameter(
+          "wall_mm", &ReliefOptions::wall_mm, "Wall thickness", unit::mm, 0.1, 100,
+          "Thickness of the wall behind the surface, measured along the line of sight. Thicker is stronger and closes narrow gaps; 2 mm is usual for printing.")
+          .group("Output")
+          .only_with("solid", "thick")
+          .slider(0.5, 10),
       parameter(
           "pixel_mm", &ReliefOptions::pixel_mm, "Detail of the STL", unit::mm, 0.01, 10,
           "Spacing of the points in the height map and in the exported solid. Smaller shows finer detail and makes larger files; half the width of the nozzle or tool is fine enough.")

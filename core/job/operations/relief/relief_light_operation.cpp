@@ -103,6 +103,9 @@ OperationResult run_relief_light(const OperationCall& call, const ReliefLightOpt
   const double exposure = looks ? looks->exposure : 0;
   std::vector<std::string> notes = light.notes;
   if (!looks && notes.empty()) notes.push_back("No light falls on the model from there.");
+  if (options.solid == SolidKind::thick)
+    notes.push_back(
+        "The light falls on the filled solid: no light comes through what a thick surface leaves open behind it.");
   report["light_similarity"] = number_or_null(looks.has_value(), looks ? looks->similarity : 0);
   report["light_similarity_no_shadows"] = number_or_null(looks.has_value(), looks ? looks->similarity_no_shadows : 0);
   report["relief_in_shadow_percent"] = number_or_null(looks.has_value(), looks ? looks->relief_in_shadow_percent : 0);

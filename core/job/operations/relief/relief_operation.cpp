@@ -19,6 +19,7 @@
 #include "relief/height_map.h"
 #include "relief/relief.h"
 #include "relief/seen/seen_difference.h"
+#include "relief/thick/thick_solid.h"
 
 namespace formwright {
 namespace {
@@ -78,7 +79,7 @@ std::vector<ReportField> relief_report_fields() {
       {"painted_vertices", "Painted vertices", "",
        "Number of vertices of each kind that is painted: matters_more, matters_less, free, on_base, own_thickness. Only with a painting."},
       {"stands_out_max_mm", "Largest height above the base", "mm",
-       "How far the relief stands out from its base at most; more than the thickness where it is painted so. Only with a painting."},
+       "How far the relief stands out from its base at most; more than the thickness where it is free or painted so. Only with a painting or only_outline."},
       {"kkt_residual", "KKT residual", "",
        "Relative error of the optimality conditions (Karush-Kuhn-Tucker) at the solution; practically 0."},
       {"relative_gap", "Distance from the best", "",
@@ -102,6 +103,12 @@ std::vector<ReportField> relief_report_fields() {
       {"distance_mm", "Viewing distance", "mm", "Distance from the viewpoint to the plate; null for far views."},
       {"size_mm", "Size of the solid", "mm", "Width, height and depth of the solid, including its plate."},
       {"watertight", "Watertight", "", "Whether the solid has no holes, as slicers need; checked on the result."},
+      {"volume_mm3", "Volume of the solid", "mm³", "Material that the solid takes. Only with a thick surface."},
+      {"hollows", "Hollows", "", "Number of closed spaces within the solid. Only with a thick surface."},
+      {"loose_parts", "Loose parts", "",
+       "Number of parts of the solid that touch neither the plate nor anything joined to it. Only with a thick surface."},
+      {"smallest_gap_mm", "Smallest gap", "mm",
+       "Gaps behind the surface narrower than this are filled. Only with a thick surface."},
       {"heightmap_pixel_mm", "Height map pixel", "mm", "Width and height of one pixel of the height map."},
       {"heightmap_mm_per_level", "Height map level", "mm",
        "Height of one of the 65,535 grey levels of the height map; level 0 is at the height of the floor."},
@@ -245,6 +252,45 @@ std::vector<std::string> notes_of(const Relief& relief) {
   return notes;
 }
 
+/// The solid of a thick surface, and what the maker should know about it.
+TriangleMesh thick_mesh(const SolvedRelief& solved, const ReliefOptions& options, PlateSize plate,
+                        const AllowedSpace& space, Json& report, std::vector<std::string>& notes, Context& context) {
+  const ThickSolid solid = thick_solid(solved.relief.moved, solved.solver->F(), solved.solver->frame().kappa,
+                                       {.size_mm = options.width_mm,
+                                        .plate = plate,
+                                        .plate_mm = options.plate_mm,
+                                        .wall_mm = options.wall_mm,
+                                        .above_mm = space.above_mm,
+                                        .below_mm = space.below_mm,
+                                        .pixel_mm = options.pixel_mm,
+                                        .tolerance_mm = solid_tolerance_share * options.thickness_mm},
+                                       context);
+  report["volume_mm3"] = solid.volume_mm3;
+  report["hollows"] = solid.hollows;
+  report["loose_parts"] = solid.loose_parts;
+  report["smallest_gap_mm"] = 2 * solid.opening_mm;
+  if (solid.loose_parts > 0)
+    notes.push_back(std::to_string(solid.loose_parts) +
+                    (solid.loose_parts == 1 ? " part of the solid touches" : " parts of the solid touch") +
+                    " nothing else and would fall off: hold the outline to the base (outline_mm), or paint less of the "
+                    "model free.");
+  if (solid.hollows > 0)
+    notes.push_back(
+        "The solid encloses " + std::to_string(solid.hollows) + (solid.hollows == 1 ? " hollow" : " hollows") +
+        ": empty from a printer that lays down plastic, full of resin or powder from others unless you drill "
+        "a hole through the plate.");
+  return solid.mesh;
+}
+
+/// Bases that a thick surface cannot be joined to.
+void check_solid(const OperationCall& call, const ReliefOptions& options) {
+  if (options.solid != SolidKind::thick) return;
+  if (options.base != BaseShape::flat || call.inputs.contains(base_input_info().name))
+    throw Error(
+        ErrorCode::invalid_input, "solid",
+        "A thick surface is joined to a flat base only: choose the base \"flat\" and leave out base_mesh, or make the solid filled.");
+}
+
 /// A job that asks for all files gets those that there are. One that asks for nothing but pieces is refused where there
 /// are none.
 void check_pieces(const OperationCall& call, const ReliefOptions& options) {
@@ -258,6 +304,7 @@ void check_pieces(const OperationCall& call, const ReliefOptions& options) {
 OperationResult run_relief(const OperationCall& call, const ReliefOptions& options) {
   Context& context = call.context;
   check_pieces(call, options);
+  check_solid(call, options);
   const SolvedRelief solved = [&] {
     const auto span = context.span(0, 0.9, "Reading the model");
     return solve_relief(call, options);
@@ -269,6 +316,7 @@ OperationResult run_relief(const OperationCall& call, const ReliefOptions& optio
 
   context.progress(0.9, "Writing");
   OperationResult result;
+  std::vector<std::string> notes = notes_of(relief);
   Json& report = result.report;
   report_relief(report, *loaded, *solver, relief, options);
   report["factor_reused"] = solved.reused;
@@ -282,10 +330,9 @@ OperationResult run_relief(const OperationCall& call, const ReliefOptions& optio
           .value_or(std::pair{0.0, 0.0});
   const double range_mm = options.width_mm * (base_depth.second - base_depth.first) +
                           solved.base.max_along_z() * (space.above_mm + space.below_mm);
-  if (const Painting& painting = solved.painted.painting; !painting.empty()) {
-    report["painted_vertices"] = painted_vertices(painting);
-    report["stands_out_max_mm"] = space.above_mm;
-  }
+  const Painting& painting = solved.painted.painting;
+  if (!painting.empty()) report["painted_vertices"] = painted_vertices(painting);
+  if (!painting.empty() || options.only_outline) report["stands_out_max_mm"] = space.above_mm;
   report["size_mm"] = {plate.width_mm, plate.height_mm, options.plate_mm + range_mm};
   const auto add = [&](const char* name, Bytes bytes) {
     for (const OutputInfo& info : relief_outputs())
@@ -339,7 +386,12 @@ OperationResult run_relief(const OperationCall& call, const ReliefOptions& optio
     }
     if (wants_solid) {
       Model solid;
-      solid.mesh = make_solid(map, options.plate_mm, solid_tolerance_share * options.thickness_mm, context);
+      if (options.solid == SolidKind::thick) {
+        const auto span = context.span(0.9, 1, "Making the solid");
+        solid.mesh = thick_mesh(solved, options, plate, space, report, notes, context);
+      } else {
+        solid.mesh = make_solid(map, options.plate_mm, solid_tolerance_share * options.thickness_mm, context);
+      }
       report["watertight"] = Adjacency(solid.mesh).is_closed();
       for (const char* name : {"relief.stl", "relief.3mf", "relief.obj"})
         if (call.wants(name)) add(name, write_model(solid, *mesh_format_of_extension(name), context));
@@ -358,7 +410,6 @@ OperationResult run_relief(const OperationCall& call, const ReliefOptions& optio
   report["seconds_factorise"] = solved.reused ? 0.0 : solver->seconds_factorise();
   report["seconds_write"] = watch.seconds();
   report["repairs"] = loaded->repairs;
-  std::vector<std::string> notes = notes_of(relief);
   notes.insert(notes.end(), solved.painted.notes.begin(), solved.painted.notes.end());
   report["notes"] = notes;
   return result;

@@ -251,6 +251,7 @@ TEST_CASE("RunJob.ReportsOnlyDeclaredFigures") {
     if (!operation.inputs.empty() && operation.inputs.front().accepts_sample)
       message["inputs"][operation.inputs.front().name] = {{"sample", "hemisphere"}, {"vertices", 800}};
     if (operation.name == "mill-job") message["parameters"] = {{"width_mm", 20}};
+    if (operation.name == "evidence-plan-points") message["parameters"] = {{"triangles", 300}};
     std::map<std::string, std::shared_ptr<const Bytes>> files;
     for (const InputInfo& input : operation.inputs) {
       if (const Bytes* given = printed.of(input.name); given && operation.name == "evidence-register") {

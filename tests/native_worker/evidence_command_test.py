@@ -143,7 +143,16 @@ class Evidence(unittest.TestCase):
         page = (out / "diagnosis.html").read_text()
         self.assertIn("Scan in the wrong place", page)
         self.assertNotIn("<script", page)
-        self.assertEqual(len((out / "residuals.csv").read_text().splitlines()), len(PLACES) + 1)
+        # Both objects, the one that was not used for the fit too: there, too, the extended simulation is nearer.
+        rows = [line.split(",") for line in (out / "residuals.csv").read_text().splitlines()]
+        self.assertEqual(len(rows), 2 * len(PLACES) + 1)
+        unseen = [dict(zip(rows[0], row)) for row in rows[1:] if row[0] == "other"]
+        self.assertEqual(len(unseen), len(PLACES))
+        distances = {
+            model: sum(math.dist([float(row[f"{model}_{a}_mm"]) for a in "xyz"], [float(row[f"{a}_mm"]) for a in "xyz"]) for row in unseen)
+            for model in ("calibrated", "extended")
+        }
+        self.assertLess(distances["extended"], 0.5 * distances["calibrated"])
         self.assertFalse(any(math.isnan(v) for v in diagnosis["error_before_interval_mm"]))
 
     def test_what_is_wrong_with_data_is_said(self):

@@ -71,6 +71,8 @@ std::vector<ReportField> plan_points_report_fields() {
       {"information_of_measured_nats", "Information so far", "nats",
        "The same for the marks that are measured already."},
       {"information_of_all_nats", "Information of the grid", "nats", "The same for every mark of the grid."},
+      {"sheet_mm", "Sheet", "mm", "Width and length of the flat sheet."},
+      {"opening_mm", "Clamp opening", "mm", "Width and length of the clamp opening."},
       {"candidates", "Marks in reach", "", "Number of marks of the grid that can be measured from above."},
       {"spacing_mm", "Grid of marks", "mm", "Spacing of the grid that was used."},
       {"measured", "Measured", "", "Number of points that are measured already."},

@@ -46,7 +46,9 @@ test('marks are chosen, drawn, typed in, kept and compared', async ({ page }) =>
   await choose(page);
   await expect(strip(page, 'Marks chosen')).toBeVisible({ timeout: 300_000 });
   await expect(page.getByText(/^\d+ of 14 causes would show at their usual strength/)).toBeVisible();
-  await expect(page.getByRole('row', { name: /^Mould in the wrong place ?: shows at usual strength/ })).toBeVisible();
+  await expect(
+    page.getByRole('row', { name: /^Mould in the wrong place ?: shows at usual strength/ }),
+  ).toBeVisible();
   const picture = page.getByRole('img', {
     name: `${marks} numbered marks on the flat sheet, 0 of them measured`,
   });

@@ -336,7 +336,7 @@ Relief ReliefSolver::solve_within(const ReliefOptions& options, const DepthBound
   relief.normal_error = normal_error(frame_, F_, visibility_, relief.seen);
   if (in_steps) relief.pieces = cut_into_bands(frame_, F_, relief.qp.u, m, bounds, *borders, context);
   const bool own_bounds = in_steps || bounds.painted();
-  ReliefOptions even = options;
+  ReliefOptions even = options;  // the baseline fills the thickness, whatever is free here
   even.only_outline = false;
   const Eigen::VectorXd linear =
       linear_compression(frame_, own_bounds ? depth_bounds(frame_, visibility_, BaseSurface(), even, context) : bounds);

@@ -125,7 +125,7 @@ class MeasuringPlan(unittest.TestCase):
         many.write_text("sheet_x_mm,sheet_y_mm,x_mm,y_mm,z_mm\n" + "0,0,0,0,30\n" * 301)
         self.assertIn("301 points", self.refused(*plan, "--measured", many))
         many.write_text("sheet_x_mm,sheet_y_mm,x_mm,y_mm,z_mm\n0,0,,,\n")
-        self.assertIn("no rows", self.refused(*plan, "--measured", many))
+        self.assertIn("many.csv has no rows", self.refused(*plan, "--measured", many))
         many.write_text("sheet_x_mm,sheet_y_mm,x_mm,y_mm,z_mm\n0,0,1,,\n")
         self.assertIn("y_mm", self.refused(*plan, "--measured", many))
         self.assertIn("mark_count", self.refused(*plan, "--mark-count", 0).replace("--mark-count", "mark_count"))

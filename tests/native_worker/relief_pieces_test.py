@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Reliefs on stairs and strips in pieces on the command line: all files by readers of our own.
 Usage: relief_pieces_test.py PROGRAM"""
-import collections
 import json
 import math
 import pathlib
@@ -15,31 +14,15 @@ import unittest
 import xml.etree.ElementTree
 import zipfile
 
+sys.path.insert(0, str(pathlib.Path(__file__).parent))
+from written_solids import triangles_of_stl, unpaired_and_volume, vertices_and_triangles_of_ply  # noqa: E402
+
 PROGRAM = sys.argv.pop(1)
 PIXEL_MM = 0.8
 FILES = "pieces.zip,pieces.3mf,pieces.glb,placement.svg,placement.pdf,relief.ply"
 STAIRS = ("--base", "stairs", "--base-depth-mm", "40", "--base-steps", "4", "--thickness-mm", "4")
 STRIPS = ("--base", "strips", "--base-steps", "5", "--thickness-mm", "2")
 ZIGZAG = (*STRIPS, "--base-bend", "zigzag", "--carve-depth-mm", "1")
-
-
-def triangles_of_stl(stl):
-    count, = struct.unpack_from("<I", stl, 80)
-    assert len(stl) == 84 + 50 * count
-    for k in range(count):
-        numbers = struct.unpack_from("<12f", stl, 84 + 50 * k)[3:]
-        yield [numbers[i:i + 3] for i in (0, 3, 6)]
-
-
-def unpaired_and_volume(triangles):
-    """Edges without their opposite, places compared as they stand, and the volume."""
-    edges, volume = collections.Counter(), 0
-    for corners in triangles:
-        for i in range(3):
-            edges[tuple(corners[i]), tuple(corners[(i + 1) % 3])] += 1
-        (a, b, c), (d, e, f), (g, h, i) = corners
-        volume += (a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g)) / 6
-    return sum(1 for (a, b), n in edges.items() if n != 1 or edges.get((b, a), 0) != 1), volume
 
 
 def objects_of_3mf(path):
@@ -69,23 +52,6 @@ def objects_of_glb(data):
         flat, order = numbers(primitive["attributes"]["POSITION"]), numbers(primitive["indices"])
         places = [flat[k:k + 3] for k in range(0, len(flat), 3)]
         yield node["name"], [[places[order[k + i]] for i in range(3)] for k in range(0, len(order), 3)]
-
-
-def triangles_of_ply(data):
-    header, body = data.split(b"end_header\n", 1)
-    assert b"format binary_little_endian" in header
-    element, counts, layout = None, {}, collections.defaultdict(str)
-    for line in header.decode().splitlines():
-        words = line.split()
-        if words[0] == "element":
-            element, counts[words[1]] = words[1], int(words[2])
-        elif words[0] == "property" and words[1] != "list":
-            layout[element] += {"double": "d", "float": "f", "uchar": "B", "int": "i"}[words[1]]
-    size = struct.calcsize("<" + layout["vertex"])
-    places = [struct.unpack_from("<" + layout["vertex"], body, k * size)[:3] for k in range(counts["vertex"])]
-    faces = counts["vertex"] * size
-    for k in range(counts["face"]):
-        yield [places[i] for i in struct.unpack_from("<3i", body, faces + 13 * k + 1)]
 
 
 def depth_picture(triangles, eye_mm, half_width_mm, half_height_mm):
@@ -158,7 +124,7 @@ class ReliefPieces(unittest.TestCase):
                 off = [p[k] - centre[k] for k in range(3)]
                 return [sign * sum(off[k] * axis[k] for k in range(3)) for axis, sign in ((right, 1), (up, 1), (look, -1))]
 
-            surface = [[on_plate(p) for p in corners] for corners in triangles_of_ply((self.out / "relief.ply").read_bytes())]
+            surface = [[on_plate(p) for p in corners] for corners in vertices_and_triangles_of_ply((self.out / "relief.ply").read_bytes())[1]]
             of_pieces, columns, rows = depth_picture(solids, eye, width / 2, height / 2)
             of_surface, _, _ = depth_picture(surface, eye, width / 2, height / 2)
             self.assertEqual(len(of_pieces), columns * rows)  # no gap anywhere

@@ -7,11 +7,13 @@ import collections
 import json
 import math
 import pathlib
-import struct
 import subprocess
 import sys
 import tempfile
 import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent))
+from written_solids import triangles_of_stl, unpaired_and_volume, vertices_and_triangles_of_ply  # noqa: E402
 
 PROGRAM = sys.argv.pop(1)
 PIXEL_MM = 0.4
@@ -19,41 +21,6 @@ WALL_MM = 1.5
 TOLERANCE_MM = 0.3  # along a line of sight: what a pixel is worth on the slopes that are compared
 MODEL = ("--sample", "octopus", "--sample-vertices", "2500", "--width-mm", "100", "--pixel-mm", str(PIXEL_MM))
 THICK = ("--solid", "thick", "--wall-mm", str(WALL_MM))
-
-
-def triangles_of_stl(stl):
-    count, = struct.unpack_from("<I", stl, 80)
-    assert len(stl) == 84 + 50 * count
-    for k in range(count):
-        numbers = struct.unpack_from("<12f", stl, 84 + 50 * k)[3:]
-        yield [numbers[i:i + 3] for i in (0, 3, 6)]
-
-
-def vertices_and_triangles_of_ply(data):
-    header, body = data.split(b"end_header\n", 1)
-    assert b"format binary_little_endian" in header
-    element, counts, layout = None, {}, collections.defaultdict(str)
-    for line in header.decode().splitlines():
-        words = line.split()
-        if words[0] == "element":
-            element, counts[words[1]] = words[1], int(words[2])
-        elif words[0] == "property" and words[1] != "list":
-            layout[element] += {"double": "d", "float": "f", "uchar": "B", "int": "i"}[words[1]]
-    size = struct.calcsize("<" + layout["vertex"])
-    places = [struct.unpack_from("<" + layout["vertex"], body, k * size)[:3] for k in range(counts["vertex"])]
-    faces = counts["vertex"] * size
-    return places, [[places[i] for i in struct.unpack_from("<3i", body, faces + 13 * k + 1)] for k in range(counts["face"])]
-
-
-def unpaired_and_volume(triangles):
-    """Edges without their opposite, places compared as they stand, and the volume."""
-    edges, volume = collections.Counter(), 0
-    for corners in triangles:
-        for i in range(3):
-            edges[tuple(corners[i]), tuple(corners[(i + 1) % 3])] += 1
-        (a, b, c), (d, e, f), (g, h, i) = corners
-        volume += (a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g)) / 6
-    return sum(1 for (a, b), n in edges.items() if n != 1 or edges.get((b, a), 0) != 1), volume
 
 
 def sights(triangles, eye_mm, half_width_mm, half_height_mm, step_mm):

@@ -37,6 +37,7 @@ PointInformation::PointInformation(const ForwardModel& model, const Sensitivitie
     }
   covariances_ = prior.asDiagonal() * effects_;
   cause_covariance_ = Eigen::VectorXd(prior(causes_)).asDiagonal();
+  cause_factor_.compute(cause_covariance_);
   for (Eigen::Index i = 0; i < n; ++i) {
     noise_.emplace_back();
     if (precisions(i, 0) > 0) noise_.back() = Eigen::MatrixXd(precisions.row(i).reshaped(d_, d_)).inverse();
@@ -54,7 +55,7 @@ double PointInformation::gain(Eigen::Index row) const {
   const auto [causes, spread] = seen(row);
   // det(C - B S^-1 B^T) = det C det(S - B^T C^-1 B) / det S: the spread of the point where the causes are known,
   // against that where they are not.
-  const Eigen::MatrixXd known = spread - causes.transpose() * cause_covariance_.llt().solve(causes);
+  const Eigen::MatrixXd known = spread - causes.transpose() * cause_factor_.solve(causes);
   const double gain = 0.5 * (log_determinant(spread) - log_determinant(known));
   return std::isfinite(gain) ? std::max(0.0, gain) : 0;
 }
@@ -69,6 +70,7 @@ void PointInformation::measure(Eigen::Index row) {
   covariances_ -= own * factor.solve(with_all);
   cause_covariance_ -= causes * factor.solve(causes.transpose());
   cause_covariance_ = (0.5 * (cause_covariance_ + cause_covariance_.transpose())).eval();
+  cause_factor_.compute(cause_covariance_);
 }
 
 double information_about_causes(const ForwardModel& model, const Eigen::MatrixXd& gram) {

@@ -2,6 +2,7 @@
 #pragma once
 // What measuring a point tells about the causes, before it is measured: Bayesian design of experiments for a linear
 // model [CV95].
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <vector>
 
@@ -11,9 +12,9 @@
 namespace formwright {
 
 /// A point is y = J theta + tau Phi z + e. J are sensitivities, theta all parameters with their priors, z the
-/// coefficients of structure that no cause makes (structured_misfit.h), e noise. Told is the mutual information of the
-/// measured points and the causes' parameters, with all others integrated out:
-/// (log det of their prior covariance - log det of their posterior covariance) / 2, in nats.
+/// coefficients of structure that no cause makes (structured_misfit.h), e noise. What is counted is the mutual
+/// information of the measured points and the causes' parameters, with all others integrated out: (log det of their
+/// prior covariance - log det of their posterior covariance) / 2, in nats.
 class PointInformation {
  public:
   /// Of object 0 of `model`. `sensitivities`: of all parameters, n x d each. `precisions`: of the points, n x d^2; a
@@ -35,10 +36,11 @@ class PointInformation {
   Seen seen(Eigen::Index row) const;
 
   Eigen::Index d_;
-  std::vector<Eigen::Index> causes_;    // rows of the unknowns
-  Eigen::MatrixXd effects_;             // unknowns x n d: transposed rows of [J, tau Phi]
-  Eigen::MatrixXd covariances_;         // unknowns x n d: of the unknowns with the points, given what was measured
-  Eigen::MatrixXd cause_covariance_;    // k x k, given what was measured
+  std::vector<Eigen::Index> causes_;  // rows of the unknowns
+  Eigen::MatrixXd effects_;           // unknowns x n d: transposed rows of [J, tau Phi]
+  Eigen::MatrixXd covariances_;       // unknowns x n d: of the unknowns with the points, given what was measured
+  Eigen::MatrixXd cause_covariance_;  // k x k, given what was measured
+  Eigen::LLT<Eigen::MatrixXd> cause_factor_;
   std::vector<Eigen::MatrixXd> noise_;  // d x d each; empty where a point cannot be measured
   double total_ = 0;
 };

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// A wall around any surface: alpha wrapping (Portaneri, Rouxel-Labbé, Hemmer, Cohen-Steiner, Alliez 2022), CGAL's
-// Alpha_wrap_3.
+// A wall around any surface: alpha wrapping [PRHCA22], CGAL's Alpha_wrap_3.
 #include "base/context.h"
 #include "geometry/mesh/triangle_mesh.h"
 

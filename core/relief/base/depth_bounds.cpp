@@ -30,7 +30,9 @@ void refuse_misses(const DepthBounds& bounds, int asked, const ReliefOptions& op
 
 DepthBounds depth_bounds(const ViewFrame& frame, const Visibility& visibility, const BaseSurface& base,
                          const ReliefOptions& options, Context& context, const Painting& given) {
-  const Painting painting = options.only_outline ? free_within_outline(given, visibility) : given;
+  Painting with_free;
+  if (options.only_outline) with_free = free_within_outline(given, visibility);
+  const Painting& painting = options.only_outline ? with_free : given;
   const auto n = static_cast<std::size_t>(frame.P.rows());
   const double thickness = options.thickness_mm / options.width_mm, carve = options.carve_depth_mm / options.width_mm;
   DepthBounds bounds;

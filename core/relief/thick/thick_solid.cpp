@@ -16,8 +16,7 @@
 namespace formwright {
 namespace {
 
-constexpr int max_front_triangles = 3'000'000;  // 0.6 kB each while the solid is joined and cut
-constexpr double opening_share = 0.5;           // of the wall: the wrap then reaches 13 % farther than the wall
+constexpr double opening_share = 0.5;  // of the wall: the wrap then reaches 13 % farther than the wall
 // Of the plate's diagonal and the relief's height: a wall thinner than this is made of triangles of this size, which
 // bounds their number.
 constexpr double min_opening_share = 1.0 / 400;
@@ -61,10 +60,11 @@ TriangleMesh front_solid(const Positions& moved, const Triangles& F, double kapp
   lay_border_bare(map);
   const double front_mm = options.plate_mm + options.below_mm;  // of the plate, above its back
   TriangleMesh solid = make_solid(map, front_mm + map.floor_mm, options.tolerance_mm, context);
-  if (solid.F.rows() > max_front_triangles)
+  if (solid.F.rows() > options.max_front_triangles)
     throw Error(ErrorCode::invalid_input, "pixel_mm",
                 "The front of the thick surface would have " + std::to_string(solid.F.rows()) +
-                    " triangles, and at most 3 million can be joined to its plate: raise the detail spacing (pixel_mm) "
+                    " triangles, and at most " + std::to_string(options.max_front_triangles) +
+                    " can be joined to its plate: raise the detail spacing (pixel_mm) "
                     "or lower the width.");
   const Vec2 middle_mm(0.5 * plate.width_mm, 0.5 * plate.height_mm);
   for (Eigen::Index i = 0; i < solid.V.rows(); ++i) {

@@ -12,9 +12,10 @@ struct ThickSolidOptions {
   PlateSize plate{100, 100};
   double plate_mm = 3;
   double wall_mm = 2;
-  double above_mm = 5, below_mm = 0;  // how far the relief may be before the plate's front and behind it
-  double pixel_mm = 0.2;              // of the grid of rays that the front is sampled with
-  double tolerance_mm = 0.005;        // how far the front's larger triangles may leave its nodes
+  double above_mm = 5, below_mm = 0;    // how far the relief may be before the plate's front and behind it
+  double pixel_mm = 0.2;                // of the grid of rays that the front is sampled with
+  double tolerance_mm = 0.005;          // how far the front's larger triangles may leave its nodes
+  int max_front_triangles = 3'000'000;  // 0.6 kB each while the solid is joined and cut
 };
 
 struct ThickSolid {
@@ -34,7 +35,7 @@ struct ThickSolid {
 /// homography (x, y, z) -> (x, y, z) / (1 + kappa z), which makes the rays parallel and keeps planes planes, and is
 /// brought back by its inverse. Then: front solid ∩ (wall ∪ plate), by exact booleans, within the plate's sides.
 /// @param moved  view coordinates; what is seen beside the plate is cut off
-/// Throws Error: invalid_input ("pixel_mm" as make_height_map and above 3 million triangles, "wall_mm" as
+/// Throws Error: invalid_input ("pixel_mm" as make_height_map and beyond max_front_triangles, "wall_mm" as
 /// thick_surface), could_not_solve, cancelled.
 ThickSolid thick_solid(const Positions& moved, const Triangles& F, double kappa, const ThickSolidOptions& options,
                        Context& context);

@@ -90,8 +90,8 @@ Json write_object_setup(const ThermoformOptions& o, MeasuredSurface surface) {
           {"measured_surface", surface == MeasuredSurface::outer ? "outer" : "mid"}};
 }
 
-std::vector<MeasuredPoint> read_measured_points(ByteView csv) {
-  const auto rows = read_number_table(csv, "measured.csv", "measured",
+std::vector<MeasuredPoint> read_measured_points(ByteView csv, const std::string& file_name) {
+  const auto rows = read_number_table(csv, file_name, "measured",
                                       {{"sheet_x_mm"},
                                        {"sheet_y_mm"},
                                        {"x_mm", true, true},
@@ -102,7 +102,7 @@ std::vector<MeasuredPoint> read_measured_points(ByteView csv) {
   for (const std::vector<double>& row : rows) {
     if (row[5] < 0)
       throw Error(ErrorCode::invalid_input, "measured",
-                  "measured.csv, point " + std::to_string(points.size() + 1) + ": “sigma_mm” is negative.");
+                  file_name + ", point " + std::to_string(points.size() + 1) + ": “sigma_mm” is negative.");
     points.push_back({Vec2(row[0], row[1]), Vec3(row[2], row[3], row[4]), row[5]});
   }
   return points;

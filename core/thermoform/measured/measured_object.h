@@ -41,7 +41,7 @@ struct MeasuredPoint {
 /// measured.csv: header sheet_x_mm,sheet_y_mm,x_mm,y_mm,z_mm[,sigma_mm] in any order; a row whose x, y and z are all
 /// blank is a point that was not measured, and is passed over. Throws Error{invalid_input,
 /// "measured"} with the line; at least one row.
-std::vector<MeasuredPoint> read_measured_points(ByteView csv);
+std::vector<MeasuredPoint> read_measured_points(ByteView csv, const std::string& file_name = "measured.csv");
 std::string write_measured_points(const std::vector<MeasuredPoint>& points);
 
 struct ComparedPoint {

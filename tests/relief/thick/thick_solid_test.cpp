@@ -4,6 +4,7 @@
 
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/matchers/catch_matchers_floating_point.hpp>
+#include <catch2/matchers/catch_matchers_string.hpp>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -21,6 +22,7 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::ContainsSubstring;
 using Catch::Matchers::WithinAbs;
 using Catch::Matchers::WithinRel;
 constexpr double pi = std::numbers::pi;
@@ -270,9 +272,23 @@ TEST_CASE("ThickSolid.OnThePlateItselfIsThePlate") {
   }
 }
 
-TEST_CASE("ThickSolid.RefusesTooManyPoints") {
-  ThickSolidOptions options = on_plate(2, 0.01);
-  CHECK_THROWS_AS(made(ring(40, 0), options), Error);
+TEST_CASE("ThickSolid.RefusesWhatIsTooFine") {
+  const auto refusal = [](const ThickSolidOptions& options) -> std::string {
+    try {
+      made(ring(40, 0), options);
+    } catch (const Error& error) {
+      CHECK(error.code() == ErrorCode::invalid_input);
+      CHECK(error.where() == "pixel_mm");
+      return error.what();
+    }
+    return "";
+  };
+  // More points than a height map has.
+  CHECK(refusal(on_plate(2, 0.01)) != "");
+  // More triangles of the front than may be joined.
+  ThickSolidOptions options = on_plate(4, 1);
+  options.max_front_triangles = 500;
+  CHECK_THAT(refusal(options), ContainsSubstring("at most 500 can be joined to its plate"));
 }
 
 }  // namespace

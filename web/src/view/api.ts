@@ -322,6 +322,8 @@ export interface ViewportApi {
 
   /** What lies under a point of the viewport (CSS pixels); null while nothing does. */
   pick(xPx: number, yPx: number): Hit | null;
+  /** The search tree of a mesh is being built: `pick` and pointers find nothing of it until then. */
+  readonly preparingPick: boolean;
   /** Where a point of the scene appears, CSS pixels; null behind the eye. */
   project(positionMm: Vec3): { xPx: number; yPx: number } | null;
 

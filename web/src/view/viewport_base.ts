@@ -181,6 +181,10 @@ export abstract class ViewportBase {
     return stage ? pickAt(stage, picker, camera, screen, composition.parts(), xPx, yPx) : null;
   }
 
+  get preparingPick(): boolean {
+    return this.picker.busy;
+  }
+
   setSwipe(position: number): void {
     this.composition.swipe = Math.min(1, Math.max(0, position));
     this.invalidate();

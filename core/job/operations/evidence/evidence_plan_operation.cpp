@@ -174,7 +174,7 @@ InputInfo measured_so_far_info() {
 std::vector<MeasuredPoint> measured_so_far(const OperationCall& call, const PlanPointsOptions& options) {
   const auto input = call.inputs.find("measured");
   if (input == call.inputs.end()) return {};
-  std::vector<MeasuredPoint> points = read_measured_points(*input->second.bytes);
+  std::vector<MeasuredPoint> points = read_measured_points(*input->second.bytes, input->second.file_name);
   if (points.size() > max_measured)
     throw Error(ErrorCode::invalid_input, "measured",
                 input->second.file_name + " has " + std::to_string(points.size()) + " points; with more than " +

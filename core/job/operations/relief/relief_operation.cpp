@@ -16,10 +16,10 @@
 #include "job/operations/relief/pieces/piece_files.h"
 #include "job/operations/relief/relief_base.h"
 #include "job/operations/relief/solved_relief.h"
+#include "job/operations/relief/thick_output.h"
 #include "relief/height_map.h"
 #include "relief/relief.h"
 #include "relief/seen/seen_difference.h"
-#include "relief/thick/thick_solid.h"
 
 namespace formwright {
 namespace {
@@ -252,45 +252,6 @@ std::vector<std::string> notes_of(const Relief& relief) {
   return notes;
 }
 
-/// The solid of a thick surface, and what the maker should know about it.
-TriangleMesh thick_mesh(const SolvedRelief& solved, const ReliefOptions& options, PlateSize plate,
-                        const AllowedSpace& space, Json& report, std::vector<std::string>& notes, Context& context) {
-  const ThickSolid solid = thick_solid(solved.relief.moved, solved.solver->F(), solved.solver->frame().kappa,
-                                       {.size_mm = options.width_mm,
-                                        .plate = plate,
-                                        .plate_mm = options.plate_mm,
-                                        .wall_mm = options.wall_mm,
-                                        .above_mm = space.above_mm,
-                                        .below_mm = space.below_mm,
-                                        .pixel_mm = options.pixel_mm,
-                                        .tolerance_mm = solid_tolerance_share * options.thickness_mm},
-                                       context);
-  report["volume_mm3"] = solid.volume_mm3;
-  report["hollows"] = solid.hollows;
-  report["loose_parts"] = solid.loose_parts;
-  report["smallest_gap_mm"] = 2 * solid.opening_mm;
-  if (solid.loose_parts > 0)
-    notes.push_back(std::to_string(solid.loose_parts) +
-                    (solid.loose_parts == 1 ? " part of the solid touches" : " parts of the solid touch") +
-                    " nothing else and would fall off: hold the outline to the base (outline_mm), or paint less of the "
-                    "model free.");
-  if (solid.hollows > 0)
-    notes.push_back(
-        "The solid encloses " + std::to_string(solid.hollows) + (solid.hollows == 1 ? " hollow" : " hollows") +
-        ": empty from a printer that lays down plastic, full of resin or powder from others unless you drill "
-        "a hole through the plate.");
-  return solid.mesh;
-}
-
-/// Bases that a thick surface cannot be joined to.
-void check_solid(const OperationCall& call, const ReliefOptions& options) {
-  if (options.solid != SolidKind::thick) return;
-  if (options.base != BaseShape::flat || call.inputs.contains(base_input_info().name))
-    throw Error(
-        ErrorCode::invalid_input, "solid",
-        "A thick surface is joined to a flat base only: choose the base \"flat\" and leave out base_mesh, or make the solid filled.");
-}
-
 /// A job that asks for all files gets those that there are. One that asks for nothing but pieces is refused where there
 /// are none.
 void check_pieces(const OperationCall& call, const ReliefOptions& options) {
@@ -304,7 +265,7 @@ void check_pieces(const OperationCall& call, const ReliefOptions& options) {
 OperationResult run_relief(const OperationCall& call, const ReliefOptions& options) {
   Context& context = call.context;
   check_pieces(call, options);
-  check_solid(call, options);
+  check_thick_surface(call, options);
   const SolvedRelief solved = [&] {
     const auto span = context.span(0, 0.9, "Reading the model");
     return solve_relief(call, options);
@@ -364,38 +325,38 @@ OperationResult run_relief(const OperationCall& call, const ReliefOptions& optio
     }
   }
   const bool wants_solid = call.wants("relief.stl") || call.wants("relief.3mf") || call.wants("relief.obj");
-  if (wants_solid || call.wants("heightmap.png")) {
-    const HeightMap map =
-        make_height_map(covering(*solver, relief), options.width_mm, plate, options.pixel_mm, space, context);
-    if (call.wants("heightmap.png")) {
-      report["heightmap_pixel_mm"] = {map.pitch_x_mm, map.pitch_y_mm};
-      const double of_map_mm = map.top_mm - map.floor_mm;
-      report["heightmap_mm_per_level"] = of_map_mm / 65535;
-      report["heightmap_floor_mm"] = map.floor_mm;
-      Grey16Image image;
-      image.width = map.columns;
-      image.height = map.rows;
-      image.pixel_width_mm = map.pitch_x_mm;
-      image.pixel_height_mm = map.pitch_y_mm;
-      image.levels.reserve(map.height_mm.size());
-      for (int row = map.rows - 1; row >= 0; --row)  // pictures start at the top
-        for (int column = 0; column < map.columns; ++column)
-          image.levels.push_back(static_cast<std::uint16_t>(std::lround(
-              std::min(1.0, (static_cast<double>(map.at(row, column)) - map.floor_mm) / of_map_mm) * 65535)));
-      add("heightmap.png", write_png16(image));
+  const bool thick = options.solid == SolidKind::thick;
+  HeightMap map;
+  if ((wants_solid && !thick) || call.wants("heightmap.png"))
+    map = make_height_map(covering(*solver, relief), options.width_mm, plate, options.pixel_mm, space, context);
+  if (call.wants("heightmap.png")) {
+    report["heightmap_pixel_mm"] = {map.pitch_x_mm, map.pitch_y_mm};
+    const double of_map_mm = map.top_mm - map.floor_mm;
+    report["heightmap_mm_per_level"] = of_map_mm / 65535;
+    report["heightmap_floor_mm"] = map.floor_mm;
+    Grey16Image image;
+    image.width = map.columns;
+    image.height = map.rows;
+    image.pixel_width_mm = map.pitch_x_mm;
+    image.pixel_height_mm = map.pitch_y_mm;
+    image.levels.reserve(map.height_mm.size());
+    for (int row = map.rows - 1; row >= 0; --row)  // pictures start at the top
+      for (int column = 0; column < map.columns; ++column)
+        image.levels.push_back(static_cast<std::uint16_t>(
+            std::lround(std::min(1.0, (static_cast<double>(map.at(row, column)) - map.floor_mm) / of_map_mm) * 65535)));
+    add("heightmap.png", write_png16(image));
+  }
+  if (wants_solid) {
+    Model solid;
+    if (thick) {
+      const auto span = context.span(0.9, 1, "Making the solid");
+      solid.mesh = thick_mesh(solved, options, plate, space, report, notes, context);
+    } else {
+      solid.mesh = make_solid(map, options.plate_mm, solid_tolerance_share * options.thickness_mm, context);
     }
-    if (wants_solid) {
-      Model solid;
-      if (options.solid == SolidKind::thick) {
-        const auto span = context.span(0.9, 1, "Making the solid");
-        solid.mesh = thick_mesh(solved, options, plate, space, report, notes, context);
-      } else {
-        solid.mesh = make_solid(map, options.plate_mm, solid_tolerance_share * options.thickness_mm, context);
-      }
-      report["watertight"] = Adjacency(solid.mesh).is_closed();
-      for (const char* name : {"relief.stl", "relief.3mf", "relief.obj"})
-        if (call.wants(name)) add(name, write_model(solid, *mesh_format_of_extension(name), context));
-    }
+    report["watertight"] = Adjacency(solid.mesh).is_closed();
+    for (const char* name : {"relief.stl", "relief.3mf", "relief.obj"})
+      if (call.wants(name)) add(name, write_model(solid, *mesh_format_of_extension(name), context));
   }
   if (wants_pieces(call) && solved.base.bands() != nullptr) {
     const auto span = context.span(0.9, 1, "Making the pieces");

@@ -77,7 +77,7 @@ describe('a diagnosis', () => {
     ]);
   });
 
-  it('is told: what happened, how sure, and what speaks against it', () => {
+  it('says what happened, how sure, and what speaks against it', () => {
     const diagnosis = readDiagnosis(report);
     expect(whyWords(diagnosis)).toBe(
       'The sheet was hotter on the left. “Uneven heating” and “Wedge” explain this measurement equally well.',

@@ -32,6 +32,8 @@ interface Answer {
 }
 
 export interface Gain {
+  /** Of objects that were not used at all; else of parts that were left out of the fit. */
+  readonly unseen: boolean;
   readonly title: string;
   readonly detail: string;
   readonly before: Estimate;
@@ -84,8 +86,9 @@ function estimateOf(value: Json | undefined, interval: Json | undefined): Estima
   return { value: middle, low: number(low ?? middle), high: number(high ?? middle) };
 }
 
-function gainOf(source: JsonObject, title: string, detail: string): Gain {
+function gainOf(source: JsonObject, unseen: boolean, title: string, detail: string): Gain {
   return {
+    unseen,
     title,
     detail,
     before: estimateOf(source['error_before_mm'], source['error_before_interval_mm']),
@@ -146,8 +149,8 @@ export function readDiagnosis(report: Report): Diagnosis {
       measurement: text(pair['measurement']),
     })),
     gains: [
-      gainOf(report, 'Points left out', 'of the fit'),
-      ...(isObject(unseen) ? [gainOf(unseen, 'Kept for checking', objects.join(', '))] : []),
+      gainOf(report, false, 'Points left out', 'of the fit'),
+      ...(isObject(unseen) ? [gainOf(unseen, true, 'Kept for checking', objects.join(', '))] : []),
     ],
     noiseFloor_mm: figure(report, 'noise_floor_mm') ?? 0,
     sigma_mm: new Map(

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A diagnosis told in five steps: how far off, where, why, what to do, how sure. Figures and what was not needed are
-// folded away below it.
+// A diagnosis in five steps: how far off, where, why, what to do, how sure.
 import type { ComponentChildren } from 'preact';
 import { formatNumber, withUnit } from '../../ui';
 import type { Diagnosis, Gain } from './diagnosis';
@@ -67,11 +66,11 @@ function whereWords(residuals: Residuals): string {
 export function whyWords(diagnosis: Diagnosis): string {
   const { named, causes, reading } = diagnosis;
   if (reading === 'none' || reading === 'unknown') return readingWords(diagnosis);
-  const said = named.flatMap((name) => {
+  const sentences = named.flatMap((name) => {
     const cause = causes.find((one) => one.name === name);
     return cause ? [cause.inWords || `${cause.label}.`] : [];
   });
-  return [...said, readingWords(diagnosis)].filter(Boolean).join(' ');
+  return [...sentences, readingWords(diagnosis)].filter(Boolean).join(' ');
 }
 
 function todo({ reading, named, causes }: Diagnosis): string[] {
@@ -90,8 +89,8 @@ function printWords(residuals: Residuals): string {
     : `Or print for the machine as it is: the simulation with this cause puts the features of the next print ${length(moved.mean_mm)} elsewhere on average, up to ${length(moved.largest_mm)}.`;
 }
 
-const gainWords = ({ title, before, after }: Gain): string =>
-  `${title === 'Points left out' ? 'On points that were left out of the fit' : 'On the object kept for checking'}, the error ${
+const gainWords = ({ unseen, before, after }: Gain): string =>
+  `${unseen ? 'On the object kept for checking' : 'On points that were left out of the fit'}, the error ${
     after.value < before.value ? 'falls' : 'goes'
   } from ${length(before.value)} to ${length(after.value)}.`;
 

@@ -73,7 +73,7 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
 
   useEffect(() => {
     if (container.current === null) return undefined;
-    const brush = brushPointer(session, (x, y) => viewport.pick(x, y));
+    const brush = brushPointer(session, () => viewport);
     const viewport: Viewport = new Viewport(container.current, {
       mode: drawnMode(mode.value),
       light: light.value,

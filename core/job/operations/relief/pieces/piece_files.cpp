@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "job/contract/model_input.h"
 #include "job/operations/relief/pieces/piece_files.h"
 
 #include <algorithm>
@@ -9,6 +8,7 @@
 #include "formats/glb/glb_nodes.h"
 #include "formats/mesh_io.h"
 #include "geometry/mesh/adjacency.h"
+#include "job/contract/model_input.h"
 #include "job/operations/relief/forest/forest_files.h"
 #include "job/operations/relief/pieces/placement_plan.h"
 

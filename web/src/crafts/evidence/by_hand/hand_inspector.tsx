@@ -136,18 +136,18 @@ function MainButtons({ session, byHand, plan }: MainButtonsProps) {
       </>
     );
   const wrong = byHand.marks.findIndex((mark) => problemOf(mark, byHand.origin, openingOf(byHand)) !== '');
+  const unfinished =
+    wrong >= 0 ? `Mark ${wrong + 1} is not right yet: read it once more, or leave it blank` : undefined;
   const few =
-    wrong >= 0
-      ? `Mark ${wrong + 1} is not right yet: read it once more, or leave it blank`
-      : measured < minMeasured
-        ? `${measured} of ${byHand.marks.length} marks are measured; ${minMeasured} are the fewest that a diagnosis takes`
-        : undefined;
+    measured < minMeasured
+      ? `${measured} of ${byHand.marks.length} marks are measured; ${minMeasured} are the fewest that a diagnosis takes`
+      : undefined;
   return (
     <>
       <Button
         kind="filled"
         size="big"
-        disabledReason={busy ?? few}
+        disabledReason={busy ?? unfinished ?? few}
         onClick={() => void takeMarks(session, byHand)}
       >
         Use these measurements
@@ -157,13 +157,13 @@ function MainButtons({ session, byHand, plan }: MainButtonsProps) {
           size="small"
           class="hand-further"
           title="Keeps those that are measured, and chooses others beside them"
-          disabledReason={busy}
+          disabledReason={busy ?? unfinished}
           onClick={() => void planMarks(session, byHand)}
         >
           Choose further marks
         </Button>
       ) : null}
-      <p>{few ?? 'They become a measured object, which you can diagnose'}</p>
+      <p>{unfinished ?? few ?? 'They become a measured object, which you can diagnose'}</p>
     </>
   );
 }

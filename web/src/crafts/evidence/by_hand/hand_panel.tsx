@@ -119,7 +119,7 @@ function Numbers({ session, byHand, onHover }: NumbersProps) {
   return (
     <>
       <div class="row hand-origin">
-        <span id="hand-origin">x and y from the clamp opening’s</span>
+        <span>x and y from the clamp opening’s</span>
         <Segmented
           label="x and y from the clamp opening’s"
           options={origins}

@@ -86,27 +86,29 @@ export function keepPainted(viewport: Viewport, session: ReliefSession): () => v
 const dabs_px = 6;
 const max_dabs = 40;
 
-/** What the pointer does with the brush; the camera keeps still while it is on the model. */
+/** What the pointer does with the brush. The camera keeps still while it is on the model, and while nobody knows yet
+ *  whether it is: then the stroke begins where the model is first found under it. */
 export function brushPointer(
   session: ReliefSession,
-  pick: Viewport['pick'],
+  view: () => Pick<Viewport, 'pick' | 'preparingPick'>,
 ): (event: ViewPointerEvent) => void {
   let last: { readonly xPx: number; readonly yPx: number } | null = null;
   let down = false;
   return ({ kind, hit, button, shiftKey, capture }) => {
     const { paint } = session;
-    if (kind === 'down' && paint.open.peek() && hit?.part === 'original' && button === 0 && !shiftKey) {
+    const here = hit?.part === 'original' || (hit === null && view().preparingPick);
+    if (kind === 'down' && paint.open.peek() && here && button === 0 && !shiftKey) {
       capture();
       down = true;
       last = hit;
-      paint.dab(hit);
+      if (hit) paint.dab(hit);
     } else if (kind === 'move' && down) {
       if (hit && last) {
         const way = Math.hypot(hit.xPx - last.xPx, hit.yPx - last.yPx);
         const steps = Math.min(max_dabs, Math.max(1, Math.ceil(way / dabs_px)));
         for (let i = 1; i < steps; ++i) {
           const share = i / steps;
-          const between = pick(
+          const between = view().pick(
             last.xPx + share * (hit.xPx - last.xPx),
             last.yPx + share * (hit.yPx - last.yPx),
           );

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Fitting a model's parameters, and the calibration that a diagnosis begins with.
+#include "evidence/fit/parameter_fit.h"
+
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
+
+#include <Eigen/Dense>
+#include <atomic>
+
+#include "base/error.h"
+#include "evidence/calibration.h"
+#include "evidence/toy_model.h"
+
+namespace formwright {
+namespace {
+using Catch::Matchers::WithinAbs;
+
+using evidence_test::ToyModel;
+
+TEST_CASE("BoundedStep.IsThatOfTheLinearSystemInsideAndClampsOutside") {
+  Eigen::Matrix3d H;
+  H << 4, 1, 0.5, 1, 3, 0.2, 0.5, 0.2, 2;
+  const Eigen::Vector3d g(1, -2, 0.5), wide = Eigen::Vector3d::Constant(10);
+  CHECK((bounded_step(H, g, -wide, wide) + H.ldlt().solve(g)).norm() < 1e-8);
+  const Eigen::Vector3d low(-0.1, -0.1, -0.1), high(0.1, 0.1, 0.1);
+  const Eigen::Vector3d s = bounded_step(H, g, low, high);
+  // Karush, Kuhn and Tucker: the gradient points out of the box where the step is at its side.
+  const Eigen::Vector3d gradient = H * s + g;
+  for (int i = 0; i < 3; ++i) {
+    CHECK(std::abs(s[i]) <= 0.1 + 1e-12);
+    const bool inside = s[i] > -0.1 + 1e-9 && s[i] < 0.1 - 1e-9;
+    CHECK((inside ? std::abs(gradient[i]) : gradient[i] * s[i]) <= 1e-6);
+  }
+}
+
+TEST_CASE("ParameterFit.RecoversBaseParametersDespiteOutliers") {
+  ToyModel model(600);
+  Eigen::VectorXd truth = model.nominal();
+  truth[0] = 0.4;
+  truth[1] = -0.7;
+  model.measure(truth, 0.02, 7, 0.05);
+  SimulationBag bag(model);
+  Context context;
+  const ParameterFit fit = fit_parameters(bag, *mean_distance_objective(model, 0.02), model.base_parameters(),
+                                          model.nominal(), {}, {}, context, "");
+  CHECK_THAT(fit.u[0], WithinAbs(0.4, 0.01));
+  CHECK_THAT(fit.u[1], WithinAbs(-0.7, 0.01));
+  CHECK(bag.simulations() < 40);
+}
+
+TEST_CASE("ParameterFit.StaysWithinRanges") {
+  ToyModel model(200);
+  Eigen::VectorXd truth = model.nominal();
+  truth[1] = 5;
+  model.measure(truth, 0.01, 1);
+  model.measurement().measured.col(0) += 3 * model.measurements().front().place.col(1);  // as of a tilt of 8
+  SimulationBag bag(model);
+  Context context;
+  FitOptions options;
+  options.max_iterations = 60;
+  const ParameterFit fit = fit_parameters(bag, *mean_distance_objective(model, 0.01), model.base_parameters(),
+                                          model.nominal(), {}, options, context, "");
+  CHECK_THAT(fit.u[1], WithinAbs(5, 1e-6));
+}
+
+TEST_CASE("ParameterFit.ProbingSaysHowFarSecantsMiss") {
+  ToyModel model(50);
+  SimulationBag bag(model);
+  Context context;
+  const std::vector<int> columns{0, 1, 3};
+  const Probing probing =
+      probe_around(bag, model.nominal(), *bag.run(model.nominal(), context, ""), columns, context, "");
+  REQUIRE(probing.bends.front().size() == 2u);  // the ripple goes one way only
+  for (Eigen::Index i = 0; i < 50; ++i) {
+    const auto place = model.measurements().front().place.row(i);
+    // Height is e^u: half of e^h + e^-h - 2.
+    CHECK_THAT(probing.bends.front()[0](i, 0),
+               WithinAbs((std::cosh(0.1) - 1) * std::sin(std::numbers::pi * place[0]), 1e-12));
+    CHECK_THAT(probing.bends.front()[0](i, 1), WithinAbs((std::cosh(0.1) - 1) * place[0] * place[1] / 2, 1e-12));
+    CHECK_THAT(probing.sensitivities.front()[0](i, 0),
+               WithinAbs(std::sinh(0.1) / 0.1 * std::sin(std::numbers::pi * place[0]), 1e-12));
+  }
+  CHECK(probing.bends.front()[1].cwiseAbs().maxCoeff() < 1e-12);  // the tilt is straight
+}
+
+TEST_CASE("SimulationBag.AsksForNothingTwiceAndStopsAtOnce") {
+  ToyModel model(50);
+  SimulationBag bag(model);
+  Context context;
+  const Eigen::VectorXd u = model.nominal();
+  bag.run({u, u, u}, context, "");
+  CHECK(bag.simulations() == 1);
+  bag.run(u, context, "");
+  CHECK(bag.simulations() == 1);
+  Context cancelled(Host{{}, [] { return true; }});
+  Eigen::VectorXd other = u;
+  other[0] = 0.1;
+  CHECK_THROWS_AS(bag.run(other, cancelled, ""), Error);
+  CHECK(bag.run(other, context, "").has_value());
+}
+
+TEST_CASE("Calibration.IntervalsHoldTheTruthAndSayWhatIsNotDistinguishable") {
+  int inside = 0;
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    ToyModel model(300, seed);
+    Eigen::VectorXd truth = model.nominal();
+    truth[0] = 0.2;
+    truth[1] = 0.5;
+    model.measure(truth, 0.1, 100 + seed);
+    SimulationBag bag(model);
+    Context context;
+    const Calibration c = calibrate(bag, context);
+    REQUIRE(c.profiles.size() == 2u);
+    CHECK(c.error < c.error_nominal);
+    CHECK(c.profiles[1].identified);
+    inside += c.profiles[1].low <= 0.5 && 0.5 <= c.profiles[1].high;
+  }
+  CHECK(inside >= 16);  // of 20 at 95 %; the structure term only widens
+  // All points at z = 0: nothing is known of the tilt.
+  ToyModel blind(300);
+  blind.measurement().place.col(1).setZero();
+  blind.measure(blind.nominal(), 0.05, 4);
+  SimulationBag bag(blind);
+  Context context;
+  const Calibration c = calibrate(bag, context);
+  CHECK_FALSE(c.profiles[1].identified);
+}
+
+TEST_CASE("Calibration.FitIsNoWorseThanTheGrid") {
+  ToyModel model(300);
+  Eigen::VectorXd truth = model.nominal();
+  truth[0] = 0.33;
+  truth[1] = 0.41;
+  model.measure(truth, 0.05, 9, 0.02);
+  SimulationBag bag(model), grid_bag(model);
+  Context context;
+  const Calibration fit = calibrate(bag, context);
+  const Calibration grid = grid_search(grid_bag, {{0, 5, 20}, {1, -2, 2}}, 5, {}, 0, context);
+  CHECK(grid.simulations == 26);  // 25 of the grid and the nominal one, which is none of them
+  CHECK(fit.error <= grid.error + 1e-9);
+}
+
+}  // namespace
+}  // namespace formwright

@@ -71,6 +71,13 @@ test('marks are chosen, drawn, typed in, kept and compared', async ({ page }) =>
   await expect(use).toHaveAttribute('aria-disabled', 'true');
   for (let mark = 1; mark <= 6; ++mark) await measure(page, mark);
   await expect(page.getByText('from where it is expected')).toBeHidden();
+  const rim = (side: string) => page.getByLabel(`Thickness of the rim, ${side}, in mm`);
+  await rim('left').fill('10');
+  await expect(page.getByText('The sheet should be about 1 mm thick: read it once more.')).toBeVisible();
+  await expect(use).toHaveAttribute('aria-disabled', 'true');
+  await rim('left').fill('0,85');
+  await rim('right').fill('1.15');
+  await expect(use).not.toHaveAttribute('aria-disabled', 'true');
 
   // The same places, counted from the middle; undo; a reload.
   const before = await field(page, 1, 'x').inputValue();
@@ -81,10 +88,11 @@ test('marks are chosen, drawn, typed in, kept and compared', async ({ page }) =>
   await expect(page.getByText('Saved', { exact: true })).toBeVisible();
   await page.reload();
   await expect(field(page, 6, 'z')).not.toHaveValue('');
+  await expect(rim('right')).toHaveValue('1.15');
 
   await use.click();
   await expect(strip(page, 'Compared with the settings as they are')).toBeVisible({ timeout: 120_000 });
-  await expect(page.getByRole('button', { name: /^Pyramid 6 points/ })).toBeVisible();
+  await expect(page.getByRole('button', { name: /^Pyramid 6 points, 2 thickness/ })).toBeVisible();
   await expect(page.getByText(/^0\.\d+\s?mm apart on average/)).toBeVisible();
 });
 

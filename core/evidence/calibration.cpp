@@ -129,18 +129,19 @@ Predictions at_nominal(SimulationBag& bag, Calibration& result, Context& context
     throw Error(ErrorCode::could_not_solve, "",
                 "The simulation fails with the set-up's own parameters: check mould and set-up.");
   const Predictions left = residuals(model, *nominal);
-  result.error_nominal = mean_distance(left);
+  result.error_nominal = mean_distance(model, left);
   take_noise(model, left, result.noise);
   return std::move(*nominal);
 }
 
 }  // namespace
 
-double mean_distance(const Predictions& left) {
+double mean_distance(const ForwardModel& model, const Predictions& left) {
   double sum = 0, count = 0;
-  for (const Eigen::MatrixXd& r : left) {
-    sum += r.rowwise().norm().sum();
-    count += static_cast<double>(r.rows());
+  for (std::size_t m = 0; m < left.size(); ++m) {
+    if (!model.measurements()[m].is_place()) continue;
+    sum += left[m].rowwise().norm().sum();
+    count += static_cast<double>(left[m].rows());
   }
   return count > 0 ? sum / count : 0;
 }
@@ -161,7 +162,7 @@ Calibration calibrate(SimulationBag& bag, Context& context) {
   result.u = fit.u;
   result.predictions = fit.predictions;
   result.objective = fit.value;
-  result.error = mean_distance(residuals(model, fit.predictions));
+  result.error = mean_distance(model, residuals(model, fit.predictions));
   {
     const auto span = context.span(0.6, 1, "Finding how certain each parameter is");
     // What another, equally good simulation would do differently is not known any better than that.
@@ -228,7 +229,7 @@ Calibration grid_search(SimulationBag& bag, const std::vector<GridAxis>& axes, i
         for (std::size_t object = 0; object < left.size(); ++object)
           for (Eigen::Index a = 0; a < shift.size(); ++a)
             shifted[object] -= shift[a] * moved[object][static_cast<std::size_t>(a)];
-        const double error = mean_distance(shifted);
+        const double error = mean_distance(model, shifted);
         if (error >= result.error) return;
         result.error = error;
         result.u = part[i];

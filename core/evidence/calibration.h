@@ -41,7 +41,7 @@ struct GridAxis {
 Calibration grid_search(SimulationBag& bag, const std::vector<GridAxis>& axes, int per_side,
                         const std::vector<int>& place_parameters, double reach, Context& context);
 
-/// Mean Euclidean distance over all points of all objects.
-double mean_distance(const Predictions& residuals);
+/// Mean Euclidean distance over all points of all measurements of places.
+double mean_distance(const ForwardModel& model, const Predictions& residuals);
 
 }  // namespace formwright

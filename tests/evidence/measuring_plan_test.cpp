@@ -35,7 +35,7 @@ struct Toy {
     precisions = isotropic(Eigen::VectorXd::Constant(points, 1 / (sigma * sigma)), 2);
   }
   PointInformation information(double structure) const {
-    return PointInformation(model, sensitivities, precisions, structure);
+    return PointInformation(model, {sensitivities}, {precisions}, structure);
   }
   ToyModel model;
   Sensitivities sensitivities;
@@ -98,7 +98,7 @@ TEST_CASE("PointInformation.OfRepeatedMeasurementsInClosedForm") {
   // log(1 + n prior^2 / sigma^2) / 2: from n = 1 on it grows by log(n) / 2, so twice the points add log(2) / 2.
   const OneCause model(64);
   const Sensitivities ones{Eigen::MatrixXd::Ones(64, 1)};
-  PointInformation information(model, ones, isotropic(Eigen::VectorXd::Constant(64, 100), 1), 0);
+  PointInformation information(model, {ones}, {isotropic(Eigen::VectorXd::Constant(64, 100), 1)}, 0);
   double before = 0;
   for (int n = 1; n <= 64; ++n) {
     const double gain = information.gain(n - 1);

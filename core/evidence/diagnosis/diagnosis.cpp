@@ -67,8 +67,11 @@ class Diagnostician {
     find_answer();
     widen_by_model();
     const auto before = held_out(result_.base).errors;
-    result_.held_out =
-        compare_errors(model_, before, result_.verdict.empty() ? before : held_out(result_.extended).errors);
+    const auto after = result_.verdict.empty() ? before : held_out(result_.extended).errors;
+    result_.held_out = compare_errors(model_, before, after);
+    for (std::size_t m = 0; m < before.size(); ++m)
+      if (!model_.measurements()[m].is_place())
+        result_.held_out_beside.push_back(compare_errors_of(model_, m, before, after));
     result_.unexplained_after = tried_.structure_left(result_.verdict);
     result_.structure = tried_.nearest_size(result_.unexplained_after);
     measure_structure();
@@ -350,6 +353,7 @@ class Diagnostician {
       const Eigen::VectorXd weights = mean_weights(tried_.precisions()[object]);
       result_.structure_before.push_back(test_structure(model_.measurements()[object], left[object], weights));
       result_.structure_after.push_back(test_structure(model_.measurements()[object], left_after[object], weights));
+      if (!model_.measurements()[object].is_place()) continue;
       const double d = static_cast<double>(model_.measurements()[object].measured.cols());
       // Mean length of a d-dimensional Gaussian.
       const double per_sigma = std::sqrt(2.0) * std::exp(std::lgamma(0.5 * (d + 1)) - std::lgamma(0.5 * d));

@@ -202,6 +202,35 @@ std::string failed_list(const DiagnosisReport& report) {
          rows + "</table></details>";
 }
 
+/// What was measured beside places, reading by reading, beside both simulations.
+std::string beside_tables(const DiagnosisReport& report) {
+  constexpr Eigen::Index max_rows = 40;
+  const Diagnosis& d = report.diagnosis;
+  std::string html;
+  std::size_t number = 0;
+  for (std::size_t i = 0; i < report.model.measurements().size(); ++i) {
+    const Measurement& m = report.model.measurements()[i];
+    if (m.is_place()) continue;
+    const HeldOutGain& gain = d.held_out_beside[number++];
+    html += "<h2>" + xml_attribute(m.name) +
+            "</h2><div class=\"panel scroll\"><p>Error on held-out data: " + figure(gain.before.mean) + "\u2009" +
+            xml_attribute(report.unit) + " calibrated, " + figure(gain.after.mean) + "\u2009" +
+            xml_attribute(report.unit) +
+            " with the extended model.</p><table><tr><th>Reading</th><th class=\"n\">Measured</th><th "
+            "class=\"n\">Calibrated</th><th class=\"n\">With the extended model</th></tr>";
+    const auto cell = [&](double value) { return "<td class=\"n\">" + figure(value / m.scale) + "</td>"; };
+    for (Eigen::Index row = 0; row < std::min(max_rows, m.measured.rows()); ++row)
+      html += "<tr><td>" + std::to_string(row + 1) + "</td>" + cell(m.measured(row, 0)) +
+              cell(d.base.predictions[i](row, 0)) + cell(d.extended.predictions[i](row, 0)) + "</tr>";
+    html += "</table>";
+    if (m.measured.rows() > max_rows)
+      html += "<p class=\"dim\">The first " + std::to_string(max_rows) + " of " + std::to_string(m.measured.rows()) +
+              " readings.</p>";
+    html += "</div>";
+  }
+  return html;
+}
+
 }  // namespace
 
 std::string diagnosis_page(const DiagnosisReport& report) {
@@ -210,7 +239,8 @@ std::string diagnosis_page(const DiagnosisReport& report) {
   const std::string unit = xml_attribute(report.unit);
   const auto with_unit = [&](double value) { return figure(value) + "\u2009" + unit; };
   std::string names;
-  for (const Measurement& m : model.measurements()) names += (names.empty() ? "" : ", ") + m.name;
+  for (const Measurement& m : model.measurements())
+    if (m.is_place()) names += (names.empty() ? "" : ", ") + m.name;
   std::string html =
       "<!doctype html><html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" content=\"width=device-width,initial-scale=1\"><title>Diagnosis of " +
       xml_attribute(names) + "</title>" + style + "</head><body><main><p class=\"dim\">Diagnosis of " +
@@ -259,7 +289,7 @@ std::string diagnosis_page(const DiagnosisReport& report) {
   std::vector<double> before, after;
   for (std::size_t object = 0; object < left.size(); ++object)
     for (Eigen::Index i = 0; i < left[object].rows(); ++i)
-      if (d.noise[object].weights[i] > 0)
+      if (model.measurements()[object].is_place() && d.noise[object].weights[i] > 0)
         before.push_back(left[object].row(i).norm()), after.push_back(left_after[object].row(i).norm());
   std::vector<double> sorted = before;
   std::sort(sorted.begin(), sorted.end());
@@ -268,25 +298,28 @@ std::string diagnosis_page(const DiagnosisReport& report) {
       "<h2>Errors on the sheet</h2><p class=\"dim\">Each point where it was on the flat sheet; lines show which way the measured point lies, lengthened.</p>";
   for (std::size_t object = 0; object < left.size(); ++object) {
     const Measurement& m = model.measurements()[object];
+    if (!m.is_place()) continue;
     html += "<div class=\"maps\">" +
             map(m, left[object], d.noise[object].weights, largest, m.name + ", calibrated", unit) +
             map(m, left_after[object], d.noise[object].weights, largest, m.name + ", with the extended model", unit) +
             "</div>";
   }
   html += "<div class=\"panel\">" + histogram(before, after, largest, d.noise_floor, unit) + "</div>";
+  html += beside_tables(report);
 
   html +=
       "<h2>Is there structure beyond noise?</h2><div class=\"panel scroll\"><table><tr><th>Object</th><th class=\"n\">Noise found</th><th class=\"n\">as stated</th><th class=\"n\">Outliers</th><th "
       "class=\"n\">Neighbours agree</th><th class=\"n\">p</th><th class=\"n\">afterwards</th><th class=\"n\">p</th></tr>";
   for (std::size_t i = 0; i < d.noise.size(); ++i)
-    html += "<tr><td>" + xml_attribute(model.measurements()[i].name) + "</td><td class=\"n\">" +
-            with_unit(d.noise[i].sigma) + "</td><td class=\"n\">" +
-            (d.noise[i].stated_sigma > 0 ? with_unit(d.noise[i].stated_sigma) : "\u2013") + "</td><td class=\"n\">" +
-            std::to_string(d.noise[i].outliers) + "</td><td class=\"n\">" +
-            figure(d.structure_before[i].neighbour_correlation, 2) + "</td><td class=\"n\">" +
-            figure(d.structure_before[i].p_value, 2) + "</td><td class=\"n\">" +
-            figure(d.structure_after[i].neighbour_correlation, 2) + "</td><td class=\"n\">" +
-            figure(d.structure_after[i].p_value, 2) + "</td></tr>";
+    html +=
+        "<tr><td>" + xml_attribute(model.measurements()[i].name) + "</td><td class=\"n\">" +
+        with_unit(d.noise[i].sigma / model.measurements()[i].scale) + "</td><td class=\"n\">" +
+        (d.noise[i].stated_sigma > 0 ? with_unit(d.noise[i].stated_sigma / model.measurements()[i].scale) : "\u2013") +
+        "</td><td class=\"n\">" + std::to_string(d.noise[i].outliers) + "</td><td class=\"n\">" +
+        figure(d.structure_before[i].neighbour_correlation, 2) + "</td><td class=\"n\">" +
+        figure(d.structure_before[i].p_value, 2) + "</td><td class=\"n\">" +
+        figure(d.structure_after[i].neighbour_correlation, 2) + "</td><td class=\"n\">" +
+        figure(d.structure_after[i].p_value, 2) + "</td></tr>";
   html +=
       "</table><p class=\"dim\">Neighbouring points whose errors agree (0: not at all, 1: fully) show that something systematic is left.</p></div>";
 

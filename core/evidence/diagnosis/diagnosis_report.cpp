@@ -21,9 +21,23 @@ Json noise_json(const ForwardModel& model, const Diagnosis& d) {
   Json list = Json::array();
   for (std::size_t i = 0; i < d.noise.size(); ++i)
     list.push_back({{"object", model.measurements()[i].name},
-                    {"sigma_mm", d.noise[i].sigma},
-                    {"stated_sigma_mm", d.noise[i].stated_sigma},
+                    {"sigma_mm", d.noise[i].sigma / model.measurements()[i].scale},
+                    {"stated_sigma_mm", d.noise[i].stated_sigma / model.measurements()[i].scale},
                     {"outliers", d.noise[i].outliers}});
+  return list;
+}
+
+/// Errors, on held-out data, of what was measured beside places.
+Json beside_json(const ForwardModel& model, const Diagnosis& d) {
+  Json list = Json::array();
+  for (const Measurement& m : model.measurements()) {
+    if (m.is_place()) continue;
+    const HeldOutGain& gain = d.held_out_beside[list.size()];
+    list.push_back({{"object", m.name},
+                    {"readings", m.measured.rows()},
+                    {"error_before_mm", gain.before.mean},
+                    {"error_after_mm", gain.after.mean}});
+  }
   return list;
 }
 
@@ -161,6 +175,7 @@ Json diagnosis_json(const DiagnosisReport& report) {
                       {"error_after_interval_mm", interval(report.unseen->after.low, report.unseen->after.high)},
                       {"gain_share", report.unseen->gain_share},
                       {"gain_interval", interval(report.unseen->gain_low, report.unseen->gain_high)}};
+  if (!d.held_out_beside.empty()) json["beside"] = beside_json(model, d);
   json["noise_floor_mm"] = d.noise_floor;
   json["noise"] = noise_json(model, d);
   json["unexplained_before_mm"] = d.unexplained_before;

@@ -53,6 +53,13 @@ struct Measurement {
   double extent_mm = 1;      // length that a unit of place stands for
   Eigen::MatrixXd measured;  // n x d
   Eigen::VectorXd sigma;     // n: standard deviation of each of the d numbers; all 0 where nothing is known
+  /// Of a quantity of another kind, measured on the object of an earlier measurement and predicted by the same
+  /// simulation: index of that one; -1 for places. It is evidence, but no distance: mean errors are without it.
+  int beside = -1;
+  double scale =
+      1;  // `measured` and `sigma` are as many times what was measured: known_misfit() then holds for it, too
+
+  bool is_place() const { return beside < 0; }
 };
 
 class ForwardModel {
@@ -65,7 +72,8 @@ class ForwardModel {
   /// once; the same bits for the same u. Throws Error{could_not_solve} where the model has no answer there,
   /// Error{cancelled}.
   virtual Eigen::MatrixXd predict(int object, const Eigen::VectorXd& u, const Context& context) const = 0;
-  /// False while another process makes this very prediction: ask for others first. From several threads at once.
+  /// False while another process makes this very prediction: ask for others first. From several threads at once. Asked
+  /// of places only.
   virtual bool claim(int /*object*/, const Eigen::VectorXd& /*u*/, const Context& /*context*/) const { return true; }
   /// The same objects and parameters, simulated more coarsely and several times as fast, for searching; null where
   /// there is no such model.

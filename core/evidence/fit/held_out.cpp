@@ -32,6 +32,7 @@ HeldOutGain compare_errors(const ForwardModel& model, const std::vector<Eigen::V
   };
   std::vector<Block> blocks;
   for (std::size_t object = 0; object < before.size(); ++object) {
+    if (weights.empty() && !model.measurements()[object].is_place()) continue;
     std::array<Block, block_count> own{};
     for (Eigen::Index i = 0; i < before[object].size(); ++i) {
       if (before[object][i] < 0 || after[object][i] < 0) continue;
@@ -75,6 +76,19 @@ HeldOutGain compare_errors(const ForwardModel& model, const std::vector<Eigen::V
   gain.gain_low = low(2);
   gain.gain_high = high(2);
   return gain;
+}
+
+HeldOutGain compare_errors_of(const ForwardModel& model, std::size_t measurement,
+                              const std::vector<Eigen::VectorXd>& before, const std::vector<Eigen::VectorXd>& after) {
+  std::vector<Eigen::VectorXd> own_before(before.size()), own_after(before.size()), alike(before.size());
+  const double scale = model.measurements()[measurement].scale;
+  const auto in_its_unit = [&](const Eigen::VectorXd& errors) {
+    return Eigen::VectorXd((errors.array() < 0).select(-1.0, errors / scale));
+  };
+  own_before[measurement] = in_its_unit(before[measurement]);
+  own_after[measurement] = in_its_unit(after[measurement]);
+  alike[measurement] = Eigen::VectorXd::Ones(before[measurement].size());
+  return compare_errors(model, own_before, own_after, alike);
 }
 
 namespace {

@@ -12,14 +12,24 @@ namespace formwright {
 
 std::vector<std::optional<Predictions>> SimulationBag::run(const std::vector<Eigen::VectorXd>& points, Context& context,
                                                            const std::string& stage) {
-  const std::size_t objects = model_.measurements().size();
+  // What lies beside a place is predicted right after it, by the same thread: its simulation is there then.
+  const std::vector<Measurement>& measurements = model_.measurements();
+  std::vector<std::vector<std::size_t>> groups;
+  std::vector<std::size_t> group_of;
+  for (std::size_t m = 0; m < measurements.size(); ++m) {
+    group_of.push_back(measurements[m].is_place() ? groups.size()
+                                                  : group_of[static_cast<std::size_t>(measurements[m].beside)]);
+    if (measurements[m].is_place()) groups.emplace_back();
+    groups[group_of[m]].push_back(m);
+  }
+  const std::size_t objects = groups.size();
   const auto key = [](const Eigen::VectorXd& u) { return std::vector<double>(u.data(), u.data() + u.size()); };
   std::vector<const Eigen::VectorXd*> missing;
   for (const Eigen::VectorXd& u : points)
     if (known_.emplace(key(u), std::nullopt).second) missing.push_back(&u);
 
   // One chunk for each object at each point: threads take the next as they get free.
-  std::vector<Predictions> made(missing.size(), Predictions(objects));
+  std::vector<Predictions> made(missing.size(), Predictions(measurements.size()));
   std::vector<std::atomic<bool>> failed(missing.size());
   const auto job_thread = std::this_thread::get_id();
   std::atomic<std::size_t> done{0};
@@ -29,7 +39,8 @@ std::vector<std::optional<Predictions>> SimulationBag::run(const std::vector<Eig
   const auto make = [&](std::size_t job) {
     const std::size_t point = job / objects, object = job % objects;
     try {
-      made[point][object] = model_.predict(static_cast<int>(object), *missing[point], context);
+      for (const std::size_t m : groups[object])
+        made[point][m] = model_.predict(static_cast<int>(m), *missing[point], context);
       ++simulations_;
     } catch (const Error& error) {
       if (error.code() != ErrorCode::could_not_solve) throw;
@@ -39,7 +50,7 @@ std::vector<std::optional<Predictions>> SimulationBag::run(const std::vector<Eig
     if (std::this_thread::get_id() == job_thread) context.progress(fraction, stage);
   };
   const auto claimed = [&](std::size_t job) {
-    return model_.claim(static_cast<int>(job % objects), *missing[job / objects], context);
+    return model_.claim(static_cast<int>(groups[job % objects].front()), *missing[job / objects], context);
   };
   try {
     context.progress(0, stage);

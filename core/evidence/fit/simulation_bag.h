@@ -11,8 +11,8 @@
 
 namespace formwright {
 
-/// Predictions of every object of a model at one u.
-using Predictions = std::vector<Eigen::MatrixXd>;  // one n x d for each object
+/// Predictions of every measurement of a model at one u.
+using Predictions = std::vector<Eigen::MatrixXd>;  // one n x d for each measurement
 
 class SimulationBag {
  public:

@@ -22,11 +22,16 @@ constexpr double tie = 0.01;  // of a gain: mirrored points tell the same, and t
 
 /// The model about two materials, and how well each point would be known.
 struct Surroundings {
-  Eigen::MatrixXd expected;
+  Predictions expected;
   std::vector<int> columns;  // all parameters
-  Sensitivities about_stiffer, about_nominal;
-  Precisions precisions;
+  std::vector<Sensitivities> about_stiffer, about_nominal;
+  std::vector<Precisions> precisions;  // all zero for what is of another object
 };
+
+/// Of the object that is planned for.
+bool is_counted(const ForwardModel& model, std::size_t measurement) {
+  return measurement == 0 || model.measurements()[measurement].beside == 0;
+}
 
 /// A material that a calibration may well end at.
 Eigen::VectorXd stiffer(const ForwardModel& model) {
@@ -45,7 +50,7 @@ Surroundings look_around(SimulationBag& bag, Context& context) {
   if (!at_nominal)
     throw Error(ErrorCode::could_not_solve, "",
                 "The simulation fails with the set-up's own parameters: check mould and set-up.");
-  around.expected = at_nominal->front();
+  around.expected = *at_nominal;
   Probing nominal, other;
   {
     const auto span = context.span(0, 0.45, trying);
@@ -58,40 +63,36 @@ Surroundings look_around(SimulationBag& bag, Context& context) {
     other = at_stiffer ? probe_around(bag, u, *at_stiffer, around.columns, context, trying) : nominal;
   }
   const auto span = context.span(0.9, 1, trying);
-  around.about_stiffer = other.sensitivities.front();
+  around.about_stiffer = other.sensitivities;
   const std::vector<int> discrepancies = model.parameters_with(ParameterRole::discrepancy);
   auto movements =
       movements_of(model, discrepancies, sensitivities_of(discrepancies, nominal.sensitivities, around.columns));
   // As in a diagnosis: where the simulation leaps, a point tells less.
-  for (const Probing* probing : {&nominal, &other})
-    for (const Eigen::MatrixXd& bend : probing->bends.front()) movements.front().push_back(std::sqrt(0.5) * bend);
-  const Eigen::VectorXd weights = model.measurements().front().sigma.array().square().inverse();
-  std::vector<Eigen::VectorXd> all{weights};
-  for (std::size_t object = 1; object < model.measurements().size(); ++object)
-    all.push_back(Eigen::VectorXd::Zero(model.measurements()[object].measured.rows()));
-  around.precisions = precisions_of(model, all, movements).front();
-  around.about_nominal =
-      at_usual_strengths(bag, *at_nominal, std::move(nominal.sensitivities), context, trying).front();
+  std::vector<Eigen::VectorXd> weights;
+  for (std::size_t m = 0; m < model.measurements().size(); ++m) {
+    const Measurement& own = model.measurements()[m];
+    for (const Probing* probing : {&nominal, &other})
+      for (const Eigen::MatrixXd& bend : probing->bends[m]) movements[m].push_back(std::sqrt(0.5) * bend);
+    weights.push_back(is_counted(model, m) ? Eigen::VectorXd(own.sigma.array().square().inverse())
+                                           : Eigen::VectorXd(Eigen::VectorXd::Zero(own.sigma.size())));
+  }
+  around.precisions = precisions_of(model, weights, movements);
+  around.about_nominal = at_usual_strengths(bag, *at_nominal, std::move(nominal.sensitivities), context, trying);
   return around;
 }
 
-/// Of some rows: what a diagnosis would have to go by.
+/// Of some rows of the first measurement, and of all that lies beside it: what a diagnosis would have to go by.
 class Outlook {
  public:
   Outlook(const ForwardModel& model, const Surroundings& around, const std::vector<Eigen::Index>& rows)
       : model_(model), around_(around) {
-    const Measurement& all = model.measurements().front();
-    Measurement part;
-    part.place = all.place(rows, Eigen::all);
-    part.extent_mm = all.extent_mm;
-    const StructuredMisfit misfit(part, around.precisions(rows, Eigen::all), {model.known_misfit()});
-    const auto count = static_cast<Eigen::Index>(rows.size());
-    std::vector<Eigen::MatrixXd> columns;
-    for (const Sensitivities* s : {&around.about_stiffer, &around.about_nominal})
-      for (const Eigen::MatrixXd& column : *s) columns.emplace_back(column(rows, Eigen::all));
-    const Eigen::MatrixXd zero = Eigen::MatrixXd::Zero(count, all.measured.cols());
-    both_ = misfit.gram(zero, columns);
-    nominal_ = misfit.gram(zero, std::span(columns).subspan(around.columns.size()));
+    add(0, rows);
+    for (std::size_t m = 1; m < model.measurements().size(); ++m) {
+      if (!is_counted(model, m)) continue;
+      std::vector<Eigen::Index> all(static_cast<std::size_t>(model.measurements()[m].place.rows()));
+      std::iota(all.begin(), all.end(), 0);
+      add(m, all);
+    }
   }
 
   /// Mean of both materials, nats.
@@ -105,6 +106,21 @@ class Outlook {
   double alike(int a, int b) const { return similarity(model_, nominal_, 0, around_.columns, a, b); }
 
  private:
+  void add(std::size_t measurement, const std::vector<Eigen::Index>& rows) {
+    const Measurement& all = model_.measurements()[measurement];
+    Measurement part;
+    part.place = all.place(rows, Eigen::all);
+    part.extent_mm = all.extent_mm;
+    const StructuredMisfit misfit(part, around_.precisions[measurement](rows, Eigen::all), {model_.known_misfit()});
+    const auto count = static_cast<Eigen::Index>(rows.size());
+    std::vector<Eigen::MatrixXd> columns;
+    for (const std::vector<Sensitivities>* s : {&around_.about_stiffer, &around_.about_nominal})
+      for (const Eigen::MatrixXd& column : (*s)[measurement]) columns.emplace_back(column(rows, Eigen::all));
+    const Eigen::MatrixXd zero = Eigen::MatrixXd::Zero(count, all.measured.cols());
+    both_ += misfit.gram(zero, columns);
+    nominal_ += misfit.gram(zero, std::span(columns).subspan(around_.columns.size()));
+  }
+
   const ForwardModel& model_;
   const Surroundings& around_;
   GramByStructure both_, nominal_;
@@ -156,7 +172,13 @@ MeasuringPlan plan_measuring(SimulationBag& bag, const MeasuringPlanOptions& opt
     measure(i);
     rows.push_back(i);
   }
+  Eigen::Index beside = 0;
+  for (std::size_t k = 1; k < model.measurements().size(); ++k)
+    if (is_counted(model, k)) beside += model.measurements()[k].place.rows();
+  // Rows of what lies beside follow those of places.
+  for (Eigen::Index i = 0; i < options.measured_beside; ++i) measure(n + i);
   plan.information_of_measured = total();
+  for (Eigen::Index i = options.measured_beside; i < beside; ++i) measure(n + i);
   while (static_cast<int>(plan.chosen.size()) < options.points) {
     context.check_cancelled();
     std::vector<double> gains(static_cast<std::size_t>(n), 0);
@@ -181,7 +203,7 @@ MeasuringPlan plan_measuring(SimulationBag& bag, const MeasuringPlanOptions& opt
   std::iota(all.begin(), all.end(), 0);
   const Outlook with_all(model, around, all);
   plan.information_of_all = with_all.information();
-  if (!rows.empty()) plan.causes = outlooks(model, Outlook(model, around, rows), with_all);
+  if (beside > 0 || !rows.empty()) plan.causes = outlooks(model, Outlook(model, around, rows), with_all);
   return plan;
 }
 

@@ -17,10 +17,11 @@ namespace formwright {
 /// prior covariance - log det of their posterior covariance) / 2, in nats.
 class PointInformation {
  public:
-  /// Of object 0 of `model`. `sensitivities`: of all parameters, n x d each. `precisions`: of the points, n x d^2; a
-  /// row of zeros is a point that cannot be measured. `structure`: tau, in the unit of the measurement.
-  PointInformation(const ForwardModel& model, const Sensitivities& sensitivities, const Precisions& precisions,
-                   double structure);
+  /// Of the first measurement of `model`, and of those that lie beside it. `sensitivities`: of all parameters, n x d
+  /// each, of each measurement. `precisions`: of the points, n x d^2; a row of zeros is a point that cannot be
+  /// measured. `structure`: tau, in the unit of the measurement. Rows are counted through all measurements.
+  PointInformation(const ForwardModel& model, const std::vector<Sensitivities>& sensitivities,
+                   const std::vector<Precisions>& precisions, double structure);
 
   /// What measuring this point would add, nats; 0 for one that cannot be measured.
   double gain(Eigen::Index row) const;
@@ -33,15 +34,21 @@ class PointInformation {
   struct Seen {
     Eigen::MatrixXd causes, spread;  // k x d and d x d: covariances of the causes with the point, and of the point
   };
+  struct Point {
+    Eigen::Index column = 0, d = 0;  // of effects_
+    Eigen::MatrixXd noise;           // d x d; empty where the point cannot be measured
+  };
+  const Point& point(Eigen::Index row) const { return points_[static_cast<std::size_t>(row)]; }
+  void add(const Measurement& measurement, const Sensitivities& sensitivities, const Precisions& precisions,
+           double structure, Eigen::Index first_of_structure);
   Seen seen(Eigen::Index row) const;
 
-  Eigen::Index d_;
+  std::vector<Point> points_;
   std::vector<Eigen::Index> causes_;  // rows of the unknowns
-  Eigen::MatrixXd effects_;           // unknowns x n d: transposed rows of [J, tau Phi]
-  Eigen::MatrixXd covariances_;       // unknowns x n d: of the unknowns with the points, given what was measured
+  Eigen::MatrixXd effects_;           // unknowns x (sum of n d): transposed rows of [J, tau Phi]
+  Eigen::MatrixXd covariances_;       // as many: of the unknowns with the points, given what was measured
   Eigen::MatrixXd cause_covariance_;  // k x k, given what was measured
   Eigen::LLT<Eigen::MatrixXd> cause_factor_;
-  std::vector<Eigen::MatrixXd> noise_;  // d x d each; empty where a point cannot be measured
   double total_ = 0;
 };
 

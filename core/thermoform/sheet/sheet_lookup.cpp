@@ -68,13 +68,15 @@ Vec3 SheetLookup::middle(const SheetPoint& point) const {
 
 Vec3 SheetLookup::outer(const SheetPoint& point) const {
   Vec3 normal = Vec3::Zero();
-  double thickness = 0;
-  for (int k = 0; k < 3; ++k) {
-    normal += point.barycentric[k] * normals_.row(sheet_.mesh.F(point.face, k)).transpose();
-    thickness += point.barycentric[k] * sheet_.thickness_mm[sheet_.mesh.F(point.face, k)];
-  }
+  for (int k = 0; k < 3; ++k) normal += point.barycentric[k] * normals_.row(sheet_.mesh.F(point.face, k)).transpose();
   const double length = normal.norm();
-  return length > 1e-12 ? Vec3(middle(point) + 0.5 * thickness / length * normal) : middle(point);
+  return length > 1e-12 ? Vec3(middle(point) + 0.5 * thickness_mm(point) / length * normal) : middle(point);
+}
+
+double SheetLookup::thickness_mm(const SheetPoint& point) const {
+  double thickness = 0;
+  for (int k = 0; k < 3; ++k) thickness += point.barycentric[k] * sheet_.thickness_mm[sheet_.mesh.F(point.face, k)];
+  return thickness;
 }
 
 }  // namespace formwright

@@ -24,6 +24,7 @@ class SheetLookup {
   /// Where a point went: on the middle surface, or half a thickness outwards along the smooth normal.
   Vec3 middle(const SheetPoint& point) const;
   Vec3 outer(const SheetPoint& point) const;
+  double thickness_mm(const SheetPoint& point) const;
 
  private:
   const FormedSheet& sheet_;

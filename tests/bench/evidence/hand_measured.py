@@ -1,9 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a diagnosis makes of ten marks measured by hand: those that evidence-plan-points chooses, against as many on a
-regular raster and (--scan) against a scan of 1,200 points, on virtual objects with one hidden cause each.
+"""What a diagnosis makes of ten marks measured by hand, on virtual objects with one hidden cause each. Variants: "chosen",
+the marks that evidence-plan-points chooses; "raster", as many on a regular raster; "rim", marks chosen beside the rim's
+thickness, and that thickness; "scan", a scan of 1,200 points.
 
-  hand_measured.py build/formwright OUT.jsonl [--marks 10] [--only heating_gradient,...] [--moulds pyramid,...] [--scan]
+  hand_measured.py build/formwright OUT.jsonl [--marks 10] [--only heating_gradient,...] [--moulds pyramid,...]
+                   [--variants chosen,raster] [--strength 1]
+
+--strength is the share of the strong cause that is hidden.
 
 Marks are read off a dense scan without noise, by a plane through the nearest points, and get noise of --sigma in each
 coordinate. Rows that OUT.jsonl already has are not made again; --table prints what it holds."""
@@ -28,6 +32,7 @@ STRONG = {
     "none": {},
 }
 # The virtual machine's material is not the one that a diagnosis begins with.
+THICKNESS_SIGMA_MM = 0.05
 MACHINE = {"young_modulus_pa": 3.2e6, "elastic_law": "stable_neo_hookean", "vacuum_ramp_s": 0.2, "triangles": 9000}
 
 
@@ -78,12 +83,13 @@ def raster(count, opening):
 
 
 class Trial:
-    def __init__(self, program, mould, cause, seed, sigma, triangles, folder):
-        self.program, self.mould, self.sigma, self.triangles = program, mould, sigma, triangles
+    def __init__(self, program, mould, cause, strength, seed, sigma, triangles, folder):
+        self.program, self.mould, self.sigma, self.triangles, self.seed = program, mould, sigma, triangles, seed
+        self.hidden = {name: strength * value for name, value in STRONG[cause].items()}
         self.random = random.Random(f"{mould} {cause} {seed}")
         self.folder = Path(folder)
         size = ["--sample", mould, "--size-mm", "100"]
-        self.run("evidence-virtual-object", *size, *flags(MACHINE), *flags(STRONG[cause]), "--points", "60000", "--noise-mm", "0",
+        self.run("evidence-virtual-object", *size, *flags(MACHINE), *flags(self.hidden), "--points", "60000", "--noise-mm", "0",
                  "--outlier-percent", "0", "--seed", str(seed), "--out", self.folder / "dense")
         names = ("sheet_x_mm", "sheet_y_mm", "x_mm", "y_mm", "z_mm")
         self.dense = [tuple(float(row[n]) for n in names) for row in rows_of(self.folder / "dense/measured.csv")]
@@ -91,34 +97,47 @@ class Trial:
     def run(self, *arguments):
         subprocess.run([self.program, *map(str, arguments)], check=True, capture_output=True, text=True)
 
-    def measured_by_hand(self, name, places):
+    def rim_thickness(self, place):
+        """Of the sheet as delivered: nothing stretches it in the clamp."""
+        setup = json.loads((self.folder / "dense/setup.json").read_text())
+        wedge = self.hidden.get("thickness_wedge_x", 0), self.hidden.get("thickness_wedge_y", 0)
+        factor = 1 + sum(w * 2 * at / opening for w, at, opening in zip(wedge, place, setup["clamp_opening_mm"]))
+        return setup["sheet_thickness_mm"] * factor + self.random.gauss(0, THICKNESS_SIGMA_MM)
+
+    def measured_by_hand(self, name, places, rim=()):
         folder = self.folder / name
         folder.mkdir()
         for file in ("mould.obj", "setup.json"):
             (folder / file).write_bytes((self.folder / "dense" / file).read_bytes())
         with open(folder / "measured.csv", "w", encoding="utf-8") as out:
-            out.write("sheet_x_mm,sheet_y_mm,x_mm,y_mm,z_mm,sigma_mm\n")
+            out.write("sheet_x_mm,sheet_y_mm,x_mm,y_mm,z_mm,sigma_mm,thickness_mm,thickness_sigma_mm\n")
             for x, y in places:
                 at = [v + self.random.gauss(0, self.sigma) for v in place_at(self.dense, x, y)]
-                out.write(f"{x:g},{y:g},{at[0]:.2f},{at[1]:.2f},{at[2]:.2f},{self.sigma:g}\n")
+                out.write(f"{x:g},{y:g},{at[0]:.2f},{at[1]:.2f},{at[2]:.2f},{self.sigma:g},,\n")
+            for x, y in rim:
+                out.write(f"{x:g},{y:g},,,,,{self.rim_thickness((x, y)):.2f},{THICKNESS_SIGMA_MM:g}\n")
         return folder
 
-    def scanned(self, cause, seed):
-        self.run("evidence-virtual-object", "--sample", self.mould, "--size-mm", "100", *flags(MACHINE), *flags(STRONG[cause]), "--points",
-                 "1200", "--noise-mm", "0.05", "--seed", str(seed), "--out", self.folder / "scan")
+    def scanned(self):
+        self.run("evidence-virtual-object", "--sample", self.mould, "--size-mm", "100", *flags(MACHINE), *flags(self.hidden), "--points",
+                 "1200", "--noise-mm", "0.05", "--seed", str(self.seed), "--out", self.folder / "scan")
         return self.folder / "scan"
 
-    def planned(self, count):
+    def planned(self, count, rim):
+        """Places of the marks, and of the rim."""
+        out = self.folder / f"plan-{rim}"
         self.run("evidence-plan-points", "--sample", self.mould, "--size-mm", "100", "--mark-count", count, "--gauge-sigma-mm", self.sigma,
-                 "--out", self.folder / "plan")
-        return [(float(r["sheet_x_mm"]), float(r["sheet_y_mm"])) for r in rows_of(self.folder / "plan/measured.csv")]
+                 "--rim-thickness", "on" if rim else "off", "--out", out)
+        report = json.loads((out / "report.json").read_text())
+        return tuple([(r["sheet_x_mm"], r["sheet_y_mm"]) for r in report[name]] for name in ("marks", "rim"))
 
     def information(self, folder):
         """Nats about the causes, of a folder's points alone."""
         out = Path(str(folder) + "-information")
         self.run("evidence-plan-points", "--sample", self.mould, "--size-mm", "100", "--mark-count", 1, "--gauge-sigma-mm", self.sigma,
-                 "--measured", folder / "measured.csv", "--out", out)
-        return json.loads((out / "report.json").read_text())["information_of_measured_nats"]
+                 "--rim-thickness", "off", "--measured", folder / "measured.csv", "--out", out)
+        report = json.loads((out / "report.json").read_text())
+        return report["information_of_measured_nats"]
 
     def diagnosed(self, folder):
         out = Path(str(folder) + "-report")
@@ -131,13 +150,17 @@ class Trial:
 
 def table(path):
     rows = [json.loads(line) for line in Path(path).read_text().splitlines()]
-    print("| mould | hidden cause | chosen marks: answer | nats | raster: answer | nats | scan |\n|---|---|---|---:|---|---:|---|")
+    titles = {"chosen": "chosen marks", "raster": "raster", "rim": "chosen marks and rim", "scan": "scan"}
+    print("| mould | hidden cause, strength | " + " | ".join(titles.values()) + " |\n|---|---|" + "---|" * len(titles))
+
     def words(answer):
+        if answer is None:
+            return ""
         named = " and ".join(answer["verdict"]) or answer["reading"]
-        return named + (", in doubt" if answer["doubtful"] and answer["verdict"] else "")
+        return (named + (", in doubt" if answer["doubtful"] and answer["verdict"] else "")
+                + (f" ({answer['nats']:.1f} nats)" if "nats" in answer else ""))
     for r in rows:
-        print(f"| {r['mould']} | {r['cause']} | {words(r['chosen'])} | {r['chosen']['nats']:.1f} | {words(r['raster'])} "
-              f"| {r['raster']['nats']:.1f} | {words(r['scan']) if 'scan' in r else ''} |")
+        print(f"| {r['mould']} | {r['cause']}, {r.get('strength', 1):g} | " + " | ".join(words(r.get(name)) for name in titles) + " |")
 
 
 def main():
@@ -149,7 +172,8 @@ def main():
     parser.add_argument("--sigma", type=float, default=0.3)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--triangles", type=int, default=2500)
-    parser.add_argument("--scan", action="store_true")
+    parser.add_argument("--variants", default="chosen,raster")
+    parser.add_argument("--strength", type=float, default=1)
     parser.add_argument("--only", default=",".join(STRONG))
     parser.add_argument("--moulds", default="pyramid")
     o = parser.parse_args()
@@ -158,21 +182,24 @@ def main():
         return
     known = set()
     if Path(o.out).exists():
-        known = {(r["mould"], r["cause"], r["seed"], r["marks"]) for r in map(json.loads, Path(o.out).read_text().splitlines())}
+        known = {(r["mould"], r["cause"], r.get("strength", 1), r["seed"], r["marks"]) for r in map(json.loads, Path(o.out).read_text().splitlines())}
     for mould in o.moulds.split(","):
         for cause in o.only.split(","):
-            if (mould, cause, o.seed, o.marks) in known:
+            if (mould, cause, o.strength, o.seed, o.marks) in known:
                 continue
             with tempfile.TemporaryDirectory() as folder:
-                trial = Trial(o.program, mould, cause, o.seed, o.sigma, o.triangles, folder)
+                trial = Trial(o.program, mould, cause, o.strength, o.seed, o.sigma, o.triangles, folder)
                 setup = json.loads((trial.folder / "dense/setup.json").read_text())
-                row = {"mould": mould, "cause": cause, "seed": o.seed, "marks": o.marks, "sigma_mm": o.sigma,
-                       "triangles": o.triangles}
-                for name, places in (("chosen", trial.planned(o.marks)), ("raster", raster(o.marks, setup["clamp_opening_mm"]))):
-                    own = trial.measured_by_hand(name, places)
+                row = {"mould": mould, "cause": cause, "strength": o.strength, "seed": o.seed, "marks": o.marks,
+                       "sigma_mm": o.sigma, "triangles": o.triangles}
+                for name in o.variants.split(","):
+                    if name == "scan":
+                        row[name] = trial.diagnosed(trial.scanned())
+                        continue
+                    places, rim = {"chosen": lambda: trial.planned(o.marks, False), "rim": lambda: trial.planned(o.marks, True),
+                                   "raster": lambda: (raster(o.marks, setup["clamp_opening_mm"]), [])}[name]()
+                    own = trial.measured_by_hand(name, places, rim)
                     row[name] = trial.diagnosed(own) | {"nats": trial.information(own)}
-                if o.scan:
-                    row["scan"] = trial.diagnosed(trial.scanned(cause, o.seed))
                 with open(o.out, "a", encoding="utf-8") as out:
                     out.write(json.dumps(row) + "\n")
                 print(json.dumps(row), flush=True)

@@ -17,6 +17,7 @@ std::vector<ProposedMeasurement> proposed_measurements(const ThermoformModel& mo
     FormedObject turned = first;
     turned.setup.sheet_turned = !turned.setup.sheet_turned;
     for (MeasuredPoint& point : turned.points) point.sheet_mm = -point.sheet_mm;
+    for (MeasuredThickness& reading : turned.thickness) reading.sheet_mm = -reading.sheet_mm;
     add("Form and measure the same mould once more with the sheet turned by half a turn (\"sheet_turned\": true in its setup.json): what comes with the sheet turns with it, "
         "what the machine does stays.",
         turned);

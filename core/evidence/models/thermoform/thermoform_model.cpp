@@ -2,24 +2,22 @@
 #include "evidence/models/thermoform/thermoform_model.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstring>
 
-#include "base/statistics.h"
-#include "base/format.h"
 #include "base/sha256.h"
-#include "evidence/fit/noise_model.h"
 #include "evidence/models/thermoform/cause_words.h"
 #include "thermoform/sheet/sheet_mesh.h"
 
 namespace formwright {
 namespace {
 
-constexpr std::size_t min_sheet_points = 6;
 constexpr int fewest_triangles = 1000;   // of the cheaper model
 constexpr int max_triangles = 5000;      // of a model that has a finer one
 constexpr std::size_t max_sheets = 200;  // kept at a time; about 0.2 MB each
+/// The simulation's own error of thickness, RMS, as a share of the sheet's: what a finer mesh or the other elastic law
+/// changes (docs/evidence.md, "Thickness").
+constexpr double known_thickness_misfit = 0.03;
 
 /// What later readers of a stored simulation must find unchanged; raised when the simulation computes something else.
 constexpr const char* simulation_version = "thermoform-2:";
@@ -57,122 +55,33 @@ std::shared_ptr<const FormedSheet> unpacked(const Bytes& bytes, const Thermoform
   return sheet;
 }
 
-struct UnitName {
-  double factor;
-  const char* name;
-};
-constexpr std::array<UnitName, 4> other_units{
-    {{1e-3, "metres"}, {1 / 25.4, "inches"}, {0.1, "centimetres"}, {1e3, "micrometres"}}};
-
-double spread(const std::vector<MeasuredPoint>& points, bool on_sheet) {
-  // The range between the 5th and the 95th of a hundred, so that outliers do not count.
-  double widest = 0;
-  for (int k = 0; k < 2; ++k) {
-    std::vector<double> values;
-    for (const MeasuredPoint& p : points) values.push_back(on_sheet ? p.sheet_mm[k] : p.place_mm[k]);
-    const double low = value_of_rank(values, values.size() / 20);
-    widest = std::max(widest, value_of_rank(values, values.size() * 19 / 20) - low);
-  }
-  return widest;
-}
-
 /// Not of the material, which all objects share.
 bool is_set_by_hand(const ModelParameter& p) {
   return p.role == ParameterRole::effect || (p.role == ParameterRole::base && p.name.starts_with("mould_"));
 }
 
-}  // namespace
+/// Places on the flat sheet in the clamp's directions.
+template <class Reading>
+TextureCoordinates in_clamp(const std::vector<Reading>& readings, bool sheet_turned) {
+  TextureCoordinates places(static_cast<Eigen::Index>(readings.size()), 2);
+  for (Eigen::Index i = 0; i < places.rows(); ++i)
+    places.row(i) = (sheet_turned ? -1 : 1) * readings[static_cast<std::size_t>(i)].sheet_mm.transpose();
+  return places;
+}
 
-void check_measured_object(const FormedObject& object) {
-  const auto refuse = [&](const std::string& sentence) {
-    throw Error(ErrorCode::invalid_input, "object", object.name + ": " + sentence);
-  };
-  if (object.points.size() < min_sheet_points)
-    refuse("measured.csv has " + std::to_string(object.points.size()) + " points; at least " +
-           std::to_string(min_sheet_points) + ", spread over the sheet, are needed.");
-  const bool stated =
-      std::all_of(object.points.begin(), object.points.end(), [](const MeasuredPoint& p) { return p.sigma_mm > 0; });
-  if (object.points.size() < static_cast<std::size_t>(min_points_to_find_noise) && !stated)
-    refuse("with " + std::to_string(object.points.size()) + " points, fewer than " +
-           std::to_string(min_points_to_find_noise) +
-           ", the noise cannot be found in the data: give sigma_mm for each point (0.3 is usual for calipers).");
-  const auto options = read_parameters<ThermoformOptions>(object.setup.parameters);
-  const double on_sheet = spread(object.points, true), in_space = spread(object.points, false);
-  if (!(on_sheet > 0) || !(in_space > 0))
-    refuse("all measured points lie in one place; measure points all over the sheet.");
-  // The rim stays where it is: over the sheet a spread in space cannot differ much from that on the sheet.
-  for (const UnitName& unit : other_units)
-    if (std::abs(std::log(in_space / on_sheet / unit.factor)) < 0.35)
-      refuse(std::string("x_mm, y_mm, z_mm of measured.csv seem to be in ") + unit.name + " (they spread over " +
-             with_digits(in_space, 3) + ", the sheet's over " + with_digits(on_sheet, 3) +
-             " mm): convert them to millimetres.");
-  const double sheet_side = std::max(options.sheet_x_mm, options.sheet_y_mm);
-  for (const UnitName& unit : other_units)
-    if (std::abs(std::log(on_sheet / sheet_side / unit.factor)) < 0.35 && on_sheet < 0.2 * sheet_side &&
-        in_space < 0.2 * sheet_side)
-      refuse(std::string("all coordinates of measured.csv seem to be in ") + unit.name +
-             ": convert them to millimetres.");
-  int outside = 0;
-  double far = 0;
-  const double turn = object.setup.sheet_turned ? -1 : 1;
-  std::vector<double> offsets, alternative;
-  for (const MeasuredPoint& p : object.points) {
-    if (std::abs(p.sheet_mm.x()) > 0.5 * options.sheet_x_mm + 1 ||
-        std::abs(p.sheet_mm.y()) > 0.5 * options.sheet_y_mm + 1)
-      ++outside;
-    offsets.push_back((p.place_mm.head<2>() - turn * p.sheet_mm).norm());
-    alternative.push_back((p.place_mm.head<2>() + turn * p.sheet_mm).norm());
+/// Measurement::place of readings on the sheet.
+template <class Reading>
+Eigen::MatrixX2d in_opening(const std::vector<Reading>& readings, const ThermoformOptions& o) {
+  Eigen::MatrixX2d place(static_cast<Eigen::Index>(readings.size()), 2);
+  for (Eigen::Index i = 0; i < place.rows(); ++i) {
+    const Vec2& on_sheet = readings[static_cast<std::size_t>(i)].sheet_mm;
+    place(i, 0) = on_sheet.x() / o.clamp_opening_x_mm + 0.5;
+    place(i, 1) = on_sheet.y() / o.clamp_opening_y_mm + 0.5;
   }
-  if (2 * outside > static_cast<int>(object.points.size()))
-    refuse("most of the measured points lie beyond the sheet of " + with_digits(options.sheet_x_mm, 3) + " x " +
-           with_digits(options.sheet_y_mm, 3) + " mm: sheet_x_mm and sheet_y_mm count from the sheet's centre, in mm.");
-  far = median(std::move(offsets));
-  if (far > 0.35 * sheet_side && median(std::move(alternative)) < 0.35 * sheet_side)
-    refuse(object.setup.sheet_turned
-               ? "the points lie as on a sheet that was not turned: take “sheet_turned” out of setup.json."
-               : "the points lie as on a sheet turned by half a turn: add \"sheet_turned\": true to setup.json.");
-  if (far > 0.35 * sheet_side)
-    refuse(
-        "the measured points lie " + with_digits(far, 3) +
-        " mm beside their places on the sheet: bring the scan into the machine's coordinates, origin in the middle of the clamp "
-        "opening, x and y as on the sheet.");
+  return place;
 }
 
-void check_mould_of(const FormedObject& object) {
-  if (object.mould == nullptr || object.mould->mesh.V.rows() == 0) return;
-  const double plate = object.setup.base_plate_end_z_mm, top = object.mould->mesh.V.col(2).maxCoeff() - plate;
-  std::vector<double> heights;
-  for (const MeasuredPoint& p : object.points) heights.push_back(p.place_mm.z() - plate);
-  const double high = value_of_rank(heights, static_cast<std::size_t>(0.98 * static_cast<double>(heights.size() - 1)));
-  constexpr double min_height_mm = 5;  // below that the sheet's thickness and the clamp's height count as well
-  if (high < min_height_mm || top <= 0) return;
-  for (const UnitName& unit : other_units)
-    if (std::abs(std::log(top / high / unit.factor)) < 0.5)
-      throw Error(ErrorCode::invalid_input, "object",
-                  object.name + ": mould.obj seems to be in " + unit.name + " (its top is at " + with_digits(top, 3) +
-                      ", measured points reach " + with_digits(high, 3) + " mm): convert it to millimetres.");
-}
-
-std::string rim_note(const FormedObject& object) {
-  const auto o = read_parameters<ThermoformOptions>(object.setup.parameters);
-  const bool outer = object.setup.measured_surface == MeasuredSurface::outer;
-  const double held = o.clamp_height_mm + object.setup.base_plate_end_z_mm + (outer ? 0.5 * o.sheet_thickness_mm : 0.0);
-  std::vector<double> heights;
-  double sigma = 0;
-  for (const MeasuredPoint& p : object.points)
-    if (std::abs(p.sheet_mm.x()) > 0.5 * o.clamp_opening_x_mm + 1 ||
-        std::abs(p.sheet_mm.y()) > 0.5 * o.clamp_opening_y_mm + 1) {
-      heights.push_back(p.place_mm.z());
-      sigma = std::max(sigma, p.sigma_mm);
-    }
-  constexpr std::size_t fewest_of_rim = 12;
-  if (heights.size() < fewest_of_rim) return {};
-  const double off = median(heights) - held;
-  if (std::abs(off) < std::max(0.3, 3 * sigma / std::sqrt(static_cast<double>(heights.size())))) return {};
-  return "The clamped rim was measured " + with_digits(std::abs(off), 3) + " mm " + (off > 0 ? "above" : "below") +
-         " where setup.json has it (clamp_height_mm, sheet_thickness_mm, measured_surface): if the scan was aligned by "
-         "its rim, register it again with the same values; else the whole scan may be off its place.";
-}
+}  // namespace
 
 ThermoformModel::ThermoformModel(std::vector<FormedObject> objects, ThermoformModelOptions options)
     : objects_(std::move(objects)), options_(std::move(options)) {
@@ -185,28 +94,53 @@ ThermoformModel::ThermoformModel(std::vector<FormedObject> objects, ThermoformMo
   constexpr double known_share = 0.3;
   for (ModelParameter& p : parameters_)
     if (p.role == ParameterRole::base && options_.profile.parameters.contains(p.name)) p.prior_sd *= known_share;
-  for (const FormedObject& object : objects_) {
-    const auto own = read_parameters<ThermoformOptions>(object.setup.parameters);
-    Measurement m;
-    m.name = object.name;
-    const auto n = static_cast<Eigen::Index>(object.points.size());
-    m.place.resize(n, 2);
-    m.measured.resize(n, 3);
-    m.sigma.resize(n);
-    m.extent_mm = std::max(own.clamp_opening_x_mm, own.clamp_opening_y_mm);
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const MeasuredPoint& p = object.points[static_cast<std::size_t>(i)];
-      m.place(i, 0) = p.sheet_mm.x() / own.clamp_opening_x_mm + 0.5;
-      m.place(i, 1) = p.sheet_mm.y() / own.clamp_opening_y_mm + 0.5;
-      m.measured.row(i) = p.place_mm.transpose();
-      m.sigma[i] = p.sigma_mm;
-    }
-    measurements_.push_back(std::move(m));
-  }
+  for (const FormedObject& object : objects_) add_places(object);
+  for (int object = 0; object < static_cast<int>(objects_.size()); ++object)
+    if (!objects_[static_cast<std::size_t>(object)].thickness.empty()) add_thickness(object);
   if (options_.triangles / 4 < fewest_triangles) return;
   ThermoformModelOptions coarse = options_;
   coarse.triangles /= 4;
   cheaper_ = std::make_unique<ThermoformModel>(objects_, std::move(coarse));
+}
+
+void ThermoformModel::add_places(const FormedObject& object) {
+  const auto own = read_parameters<ThermoformOptions>(object.setup.parameters);
+  Measurement m;
+  m.name = object.name;
+  m.place = in_opening(object.points, own);
+  m.extent_mm = std::max(own.clamp_opening_x_mm, own.clamp_opening_y_mm);
+  m.measured.resize(m.place.rows(), 3);
+  m.sigma.resize(m.place.rows());
+  for (Eigen::Index i = 0; i < m.place.rows(); ++i) {
+    const MeasuredPoint& p = object.points[static_cast<std::size_t>(i)];
+    m.measured.row(i) = p.place_mm.transpose();
+    m.sigma[i] = p.sigma_mm;
+  }
+  measurements_.push_back(std::move(m));
+}
+
+void ThermoformModel::add_thickness(int object) {
+  const FormedObject& own_object = objects_[static_cast<std::size_t>(object)];
+  const auto own = read_parameters<ThermoformOptions>(own_object.setup.parameters);
+  Measurement m;
+  m.name = own_object.name + ", thickness";
+  m.beside = object;
+  m.scale = known_misfit() / (known_thickness_misfit * own.sheet_thickness_mm);
+  m.place = in_opening(own_object.thickness, own);
+  m.extent_mm = std::max(own.clamp_opening_x_mm, own.clamp_opening_y_mm);
+  m.measured.resize(m.place.rows(), 1);
+  m.sigma.resize(m.place.rows());
+  for (Eigen::Index i = 0; i < m.place.rows(); ++i) {
+    m.measured(i, 0) = m.scale * own_object.thickness[static_cast<std::size_t>(i)].thickness_mm;
+    m.sigma[i] = m.scale * own_object.thickness[static_cast<std::size_t>(i)].sigma_mm;
+  }
+  measurements_.push_back(std::move(m));
+}
+
+int ThermoformModel::thickness_of(int object) const {
+  for (std::size_t m = 0; m < measurements_.size(); ++m)
+    if (measurements_[m].beside == object) return static_cast<int>(m);
+  return -1;
 }
 
 const ForwardModel* ThermoformModel::finer() const {
@@ -318,19 +252,20 @@ std::shared_ptr<const FormedSheet> ThermoformModel::formed(int object, const Eig
   return sheets_.emplace(key, std::move(sheet)).first->second;
 }
 
-Eigen::MatrixXd ThermoformModel::predict(int object, const Eigen::VectorXd& u, const Context& context) const {
+Eigen::MatrixXd ThermoformModel::predict(int measurement, const Eigen::VectorXd& u, const Context& context) const {
+  const Measurement& measured = measurements_[static_cast<std::size_t>(measurement)];
+  const int object = measured.is_place() ? measurement : measured.beside;
   const FormedObject& own = objects_[static_cast<std::size_t>(object)];
   const auto sheet = formed(object, u, context);
   const ThermoformOptions o = simulation_options(object, u);
-  TextureCoordinates places(static_cast<Eigen::Index>(own.points.size()), 2);
-  const double sign = own.setup.sheet_turned ? -1 : 1;
-  for (Eigen::Index i = 0; i < places.rows(); ++i)
-    places.row(i) = sign * own.points[static_cast<std::size_t>(i)].sheet_mm.transpose();
+  if (!measured.is_place())
+    return measured.scale *
+           predict_thickness(*sheet, in_clamp(own.thickness, own.setup.sheet_turned), o, measurement_effects(u));
   const double plate_z = own.setup.base_plate_end_z_mm;
   FormedSheet raised = *sheet;
   raised.mesh.V.col(2).array() += plate_z;
-  return predict_measured(raised, places, own.setup.measured_surface, o.clamp_height_mm + plate_z, o.sheet_thickness_mm,
-                          measurement_effects(u), plate_z);
+  return predict_measured(raised, in_clamp(own.points, own.setup.sheet_turned), own.setup.measured_surface,
+                          o.clamp_height_mm + plate_z, o.sheet_thickness_mm, measurement_effects(u), plate_z);
 }
 
 std::string ThermoformModel::in_words(int cause, const std::vector<double>& values) const {

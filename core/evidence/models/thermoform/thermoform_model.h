@@ -1,36 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Thermoforming as a forward model: from material, machine and measurement to the places of measured points.
+// Thermoforming as a forward model: from material, machine and measurement to the places of measured points, and to the
+// thickness where it was measured.
 #include <map>
 #include <memory>
 #include <mutex>
 #include <string>
 
 #include "evidence/fit/forward_model.h"
+#include "evidence/models/thermoform/formed_object.h"
 #include "thermoform/forming.h"
 #include "thermoform/machine_profile.h"
-#include "thermoform/measured/measured_object.h"
 
 namespace formwright {
-
-/// One measured object, read and checked.
-struct FormedObject {
-  std::string name;
-  std::string key;  // names the mould's content
-  std::shared_ptr<const MouldShape> mould;
-  ObjectSetup setup;
-  std::vector<MeasuredPoint> points;
-};
-
-/// Throws Error{invalid_input, "object"}: too few points, or points that are not in mm or not where the machine is,
-/// with the likely reason.
-void check_measured_object(const FormedObject& object);
-
-/// Throws Error{invalid_input, "object"} where the mould is in another unit than the measured points.
-void check_mould_of(const FormedObject& object);
-
-/// A sentence where the clamped rim was not measured where the set-up has it; else empty.
-std::string rim_note(const FormedObject& object);
 
 struct ThermoformModelOptions {
   int triangles = 5000;
@@ -39,6 +21,7 @@ struct ThermoformModelOptions {
   std::vector<std::string> without;  // causes that are not considered
 };
 
+/// Its measurements are the places of each object in their order, then the thickness of each object that has any.
 class ThermoformModel : public ForwardModel {
  public:
   /// `objects`: at least one, each checked.
@@ -47,7 +30,7 @@ class ThermoformModel : public ForwardModel {
   const std::vector<ModelParameter>& parameters() const override { return parameters_; }
   const std::vector<Cause>& causes() const override { return causes_; }
   const std::vector<Measurement>& measurements() const override { return measurements_; }
-  Eigen::MatrixXd predict(int object, const Eigen::VectorXd& u, const Context& context) const override;
+  Eigen::MatrixXd predict(int measurement, const Eigen::VectorXd& u, const Context& context) const override;
   bool claim(int object, const Eigen::VectorXd& u, const Context& context) const override;
   double known_misfit() const override { return 0.08; }
   std::string in_words(int cause, const std::vector<double>& values) const override;
@@ -57,6 +40,8 @@ class ThermoformModel : public ForwardModel {
   const ForwardModel* finer() const override;
 
   const std::vector<FormedObject>& objects() const { return objects_; }
+  /// Index of the measurement of this object's thickness; -1 where it has none.
+  int thickness_of(int object) const;
   /// The simulation's parameters for an object at u, and the measurement's.
   ThermoformOptions simulation_options(int object, const Eigen::VectorXd& u) const;
   MeasurementEffects measurement_effects(const Eigen::VectorXd& u) const;
@@ -66,6 +51,8 @@ class ThermoformModel : public ForwardModel {
   MachineProfile profile_at(const Eigen::VectorXd& u) const;
 
  private:
+  void add_places(const FormedObject& object);
+  void add_thickness(int object);
   /// Names a simulation: everything it depends on.
   std::string key_of(const FormedObject& object, const ThermoformOptions& options) const;
 

@@ -2,6 +2,7 @@
 #pragma once
 // Measuring a simulated sheet as a scan would: to rehearse a diagnosis with a machine whose faults are known.
 #include "thermoform/measured/measured_object.h"
+#include "thermoform/measured/measured_thickness.h"
 #include "thermoform/sheet/thermoform_options.h"
 
 namespace formwright {
@@ -11,6 +12,8 @@ struct VirtualScan {
   double noise_mm = 0.05;      // standard deviation of one coordinate, about: points are not equally good
   double outlier_percent = 2;  // points that are off by some 4 mm
   int seed = 1;
+  int thickness_points = 0;
+  double thickness_noise_mm = usual_thickness_sigma_mm;
 
   static constexpr std::string_view group_title = "Virtual scan";
   static constexpr auto parameters = std::tuple{
@@ -29,12 +32,25 @@ struct VirtualScan {
           .slider(0, 10),
       parameter("seed", &VirtualScan::seed, "Seed", unit::none, 0, 1000000,
                 "Number that selects the random points and errors. The same number gives the same measurement again.")
-          .group(group_title)};
+          .group(group_title),
+      parameter(
+          "thickness_points", &VirtualScan::thickness_points, "Thickness readings", unit::none, 0, 10000,
+          "Number of places at which the virtual scan also measures how thick the formed sheet is. Three are enough to be of use; 0 measures none.")
+          .group(group_title)
+          .slider(0, 30),
+      parameter("thickness_noise_mm", &VirtualScan::thickness_noise_mm, "Noise of the thickness", unit::mm, 0.001, 1,
+                "Standard deviation of the random error added to each thickness reading. 0.05 mm is usual.")
+          .group(group_title)
+          .slider(0.01, 0.2)};
 };
 
 /// Points of `sheet` (raised base plate at z = 0) as a scan has them, `o` being what it was formed with. The same seed
 /// gives the same points.
 std::vector<MeasuredPoint> scan_virtually(const FormedSheet& sheet, const ThermoformOptions& o, MeasuredSurface surface,
                                           const MeasurementEffects& effects, const VirtualScan& scan);
+
+/// Thickness readings of the same scan, at places of their own.
+std::vector<MeasuredThickness> gauge_virtually(const FormedSheet& sheet, const ThermoformOptions& o,
+                                               const MeasurementEffects& effects, const VirtualScan& scan);
 
 }  // namespace formwright

@@ -134,9 +134,9 @@ OperationResult run_evidence_calibrate(const OperationCall& call, const Calibrat
   std::size_t points = 0;
   double noise_squares = 0;
   int outliers = 0;
-  for (std::size_t i = 0; i < calibration.noise.size(); ++i) {
+  for (std::size_t i = 0; i < model.objects().size(); ++i) {
     points += model.objects()[i].points.size();
-    noise_squares += std::pow(calibration.noise[i].sigma, 2) / static_cast<double>(calibration.noise.size());
+    noise_squares += std::pow(calibration.noise[i].sigma, 2) / static_cast<double>(model.objects().size());
     outliers += calibration.noise[i].outliers;
     if (calibration.noise[i].stated_sigma > 0 && (calibration.noise[i].scale > 1.5 || calibration.noise[i].scale < 0.6))
       notes.push_back(model.objects()[i].name + ": the points scatter " +

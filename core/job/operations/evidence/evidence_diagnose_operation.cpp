@@ -41,7 +41,17 @@ std::vector<OutputInfo> evidence_diagnose_outputs() {
       {"residuals.csv", "text/csv", "Residuals",
        "Every measured point, of validation objects too, with its position in the calibrated simulation and in the one that includes the causes.",
        true});
+  list.push_back(
+      {"thickness.csv", "text/csv", "Thickness",
+       "Every thickness reading, with the thickness of the calibrated simulation and of the one that includes the causes; only where thickness was measured.",
+       true});
   return list;
+}
+
+std::string table_name(std::string name) {
+  for (char& c : name)
+    if (c == ',' || c == '"' || c == '\n' || c == '\r') c = '_';
+  return name;
 }
 
 /// Rows of residuals.csv, an object after the other.
@@ -51,9 +61,7 @@ std::string residual_rows(const std::vector<FormedObject>& objects, const Predic
   char line[320];
   for (std::size_t object = 0; object < objects.size(); ++object) {
     const FormedObject& own = objects[object];
-    std::string name = own.name;
-    for (char& c : name)
-      if (c == ',' || c == '"' || c == '\n' || c == '\r') c = '_';
+    const std::string name = table_name(own.name);
     for (std::size_t i = 0; i < own.points.size(); ++i) {
       const MeasuredPoint& p = own.points[i];
       const auto row = static_cast<Eigen::Index>(i);
@@ -76,6 +84,39 @@ std::string residuals_csv(const ThermoformModel& model, const Diagnosis& d, cons
   text += residual_rows(model.objects(), d.base.predictions, d.extended.predictions, weights);
   if (unseen) text += residual_rows(other->objects(), unseen->base, unseen->extended, unseen->weights);
   return text;
+}
+
+/// Rows of thickness.csv, an object after the other.
+std::string thickness_rows(const ThermoformModel& model, const Predictions& calibrated, const Predictions& extended,
+                           const std::vector<Eigen::VectorXd>& weights) {
+  std::string text;
+  char line[240];
+  for (std::size_t object = 0; object < model.objects().size(); ++object) {
+    const FormedObject& own = model.objects()[object];
+    if (own.thickness.empty()) continue;
+    const auto m = static_cast<std::size_t>(model.thickness_of(static_cast<int>(object)));
+    const double scale = model.measurements()[m].scale;
+    for (std::size_t i = 0; i < own.thickness.size(); ++i) {
+      const MeasuredThickness& reading = own.thickness[i];
+      const auto row = static_cast<Eigen::Index>(i);
+      std::snprintf(line, sizeof line, ",%.7g,%.7g,%.5g,%.4g,%.5g,%.5g,%.4g\n", reading.sheet_mm.x(),
+                    reading.sheet_mm.y(), reading.thickness_mm, reading.sigma_mm, calibrated[m](row, 0) / scale,
+                    extended[m](row, 0) / scale, weights[m][row] * scale * scale);
+      text += table_name(own.name) + line;
+    }
+  }
+  return text;
+}
+
+/// Empty where no thickness was measured.
+std::string thickness_csv(const ThermoformModel& model, const Diagnosis& d, const ThermoformModel* other,
+                          const std::optional<UnseenObjects>& unseen) {
+  std::vector<Eigen::VectorXd> weights;
+  for (const NoiseEstimate& noise : d.noise) weights.push_back(noise.weights);
+  std::string rows = thickness_rows(model, d.base.predictions, d.extended.predictions, weights);
+  if (unseen) rows += thickness_rows(*other, unseen->base, unseen->extended, unseen->weights);
+  if (rows.empty()) return {};
+  return "object,sheet_x_mm,sheet_y_mm,thickness_mm,sigma_mm,calibrated_mm,extended_mm,weight\n" + rows;
 }
 
 OperationResult run_evidence_diagnose(const OperationCall& call, const DiagnoseOptions& o) {
@@ -159,6 +200,8 @@ OperationResult run_evidence_diagnose(const OperationCall& call, const DiagnoseO
   };
   add("profile.json", write_machine_profile(profile));
   add("residuals.csv", residuals_csv(model, diagnosis, other.get(), predicted));
+  if (const std::string text = thickness_csv(model, diagnosis, other.get(), predicted); !text.empty())
+    add("thickness.csv", text);
   return result;
 }
 

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "base/sha256.h"
+#include "evidence/models/thermoform/rim_thickness.h"
 #include "formats/mesh_io.h"
 #include "geometry/repair/repair.h"
 #include "job/contract/file_pack.h"
@@ -20,6 +21,7 @@ FormedObject read_object(const InputBlob& input, const std::string& where, Opera
   try {
     object.setup = read_object_setup(files.at("setup.json"));
     object.points = read_measured_points(files.at("measured.csv"));
+    object.thickness = read_measured_thickness(files.at("measured.csv"));
     object.key = sha256_hex(files.at("mould.obj"));
     const std::string key = "evidence-mould:" + object.key;
     object.mould = call.session.find<const MouldShape>(key);
@@ -37,7 +39,8 @@ FormedObject read_object(const InputBlob& input, const std::string& where, Opera
   try {
     check_measured_object(object);
     check_mould_of(object);
-    if (const std::string note = rim_note(object); !note.empty()) object.setup.notes.push_back(note);
+    for (const std::string& note : {rim_note(object), thickness_note(object)})
+      if (!note.empty()) object.setup.notes.push_back(note);
   } catch (const Error& error) {
     throw Error(error.code(), where, error.what());
   }

@@ -11,6 +11,7 @@
 #include "job/contract/operation_options.h"
 #include "job/operations/evidence/evidence_input.h"
 #include "job/operations/evidence/evidence_operations.h"
+#include "job/operations/evidence/measuring_form.h"
 #include "job/operations/thermoform/thermoform_input.h"
 
 namespace formwright {
@@ -26,6 +27,7 @@ struct PlanPointsOptions {
   int mark_count = 10;
   double mark_spacing_mm = 10;
   double gauge_sigma_mm = 0.3;
+  bool rim_thickness = true;
 
   static constexpr std::string_view group_title = "Measuring by hand";
   static constexpr auto parameters = std::tuple{
@@ -43,7 +45,11 @@ struct PlanPointsOptions {
           "gauge_sigma_mm", &PlanPointsOptions::gauge_sigma_mm, "Measuring error", unit::mm, 0.01, 5,
           "Standard deviation of each coordinate that you measure. 0.3 mm is usual for calipers and a depth gauge.")
           .group(group_title)
-          .slider(0.05, 1)};
+          .slider(0.05, 1),
+      parameter(
+          "rim_thickness", &PlanPointsOptions::rim_thickness, "Thickness of the rim",
+          "Also asks how thick the rim is in the middle of each side, for calipers: this shows a sheet that is thicker on one side, which marks hardly do.")
+          .group(group_title)};
 };
 
 std::vector<OutputInfo> plan_points_outputs() {
@@ -52,7 +58,7 @@ std::vector<OutputInfo> plan_points_outputs() {
        "The numbered marks on the flat sheet, as seen from above. Print at 100 % and transfer them, or draw them with a ruler.",
        true},
       {"measured.csv", "text/csv", "Form to fill in",
-       "One line for each mark, with where it is expected. Fill in x_mm, y_mm and z_mm; marks left blank are passed over.",
+       "One line for each mark, with where it is expected, and one for each side of the rim. Fill in x_mm, y_mm and z_mm, or thickness_mm; lines left blank are passed over.",
        true},
       {"mould.obj", "model/obj", "Mould", "The mould as it should stand in the machine.", true},
       {"setup.json", "application/json", "Set-up",
@@ -64,8 +70,10 @@ std::vector<ReportField> plan_points_report_fields() {
       {"sentence", "What they show", "", "Which causes these marks would show, in a sentence."},
       {"marks", "Marks", "",
        "The chosen marks, the most telling first: number, place on the sheet, and where it is expected on the formed sheet."},
+      {"rim", "Thickness of the rim", "",
+       "Places of the rim whose thickness is to be measured: side, place on the sheet, and how thick the rim should be."},
       {"causes", "Causes", "",
-       "For each cause: the strength from which these marks show it, the same with every mark of the grid, its usual strength, and the cause that is hardest to tell from it."},
+       "For each cause: the strength from which these marks and the rim's thickness show it, the same with every mark of the grid, its usual strength, and the cause that is hardest to tell from it."},
       {"information_nats", "Information", "nats",
        "What measured and chosen marks together tell about all causes (mutual information, in units of 1.44 bits)."},
       {"information_of_measured_nats", "Information so far", "nats",
@@ -116,7 +124,9 @@ std::string plan_sentence(const ForwardModel& model, const MeasuringPlan& plan, 
   std::vector<std::string> shown, hidden;
   for (const CauseOutlook& one : plan.causes)
     (one.shows() ? shown : hidden).push_back("“" + model.causes()[static_cast<std::size_t>(one.cause)].label + "”");
-  const std::string marks = measured > 0 ? "The measured points and these marks" : "These marks";
+  const bool with_rim = model.measurements().size() > 1;
+  const std::string marks = std::string(measured > 0 ? "The measured points and these marks" : "These marks") +
+                            (with_rim ? " and the rim's thickness" : "");
   if (shown.empty()) return marks + " would show no cause at its usual strength: measure more, or more exactly.";
   if (hidden.empty()) return marks + " would show every cause at its usual strength.";
   return marks + " would show " + listed(shown) + " at usual strength. They would not show " + listed(hidden) + ".";
@@ -140,24 +150,6 @@ Json causes_json(const ForwardModel& model, const MeasuringPlan& plan) {
                     {"similarity", one.similarity}});
   }
   return list;
-}
-
-/// Measured points as they came, then the marks to measure.
-std::string form_csv(const std::vector<MeasuredPoint>& measured, const std::vector<MeasuredPoint>& marks) {
-  std::string text = "number,sheet_x_mm,sheet_y_mm,x_mm,y_mm,z_mm,sigma_mm,expected_x_mm,expected_y_mm,expected_z_mm\n";
-  char line[240];
-  int number = 1;
-  for (const MeasuredPoint& p : measured) {
-    std::snprintf(line, sizeof line, "%d,%.7g,%.7g,%.7g,%.7g,%.7g,%.4g,,,\n", number++, p.sheet_mm.x(), p.sheet_mm.y(),
-                  p.place_mm.x(), p.place_mm.y(), p.place_mm.z(), p.sigma_mm);
-    text += line;
-  }
-  for (const MeasuredPoint& p : marks) {
-    std::snprintf(line, sizeof line, "%d,%.7g,%.7g,,,,%.4g,%.5g,%.5g,%.5g\n", number++, p.sheet_mm.x(), p.sheet_mm.y(),
-                  p.sigma_mm, p.place_mm.x(), p.place_mm.y(), p.place_mm.z());
-    text += line;
-  }
-  return text;
 }
 
 InputInfo measured_so_far_info() {
@@ -184,12 +176,24 @@ std::vector<MeasuredPoint> measured_so_far(const OperationCall& call, const Plan
   return points;
 }
 
+std::vector<MeasuredThickness> thickness_so_far(const OperationCall& call) {
+  const auto input = call.inputs.find("measured");
+  if (input == call.inputs.end()) return {};
+  std::vector<MeasuredThickness> readings = read_measured_thickness(*input->second.bytes, input->second.file_name);
+  if (readings.size() > max_measured)
+    throw Error(ErrorCode::invalid_input, "measured",
+                input->second.file_name + " has " + std::to_string(readings.size()) +
+                    " thickness readings; a plan takes up to " + std::to_string(max_measured) + ".");
+  return readings;
+}
+
 OperationResult run_evidence_plan_points(const OperationCall& call, const Json& given, const Json& of_plan) {
   Stopwatch watch;
   const auto o = read_parameters<PlanPointsOptions>(of_plan);
   SimulationCall simulation = simulation_call(call, given);
   simulation.options.triangles = std::min(simulation.options.triangles, max_plan_triangles);
   const std::vector<MeasuredPoint> measured = measured_so_far(call, o);
+  const std::vector<MeasuredThickness> measured_thickness = thickness_so_far(call);
   Simulated simulated;
   {
     const auto span = call.context.span(0, 0.04, "Forming the sheet");
@@ -214,11 +218,17 @@ OperationResult run_evidence_plan_points(const OperationCall& call, const Json& 
   }
   object.points = measured;
   object.points.insert(object.points.end(), marks.points.begin(), marks.points.end());
+  const std::vector<RimPlace> rim =
+      o.rim_thickness ? rim_to_measure(simulation.options, measured_thickness) : std::vector<RimPlace>{};
+  object.thickness = measured_thickness;
+  for (const RimPlace& place : rim)
+    object.thickness.push_back({place.sheet_mm, simulation.options.sheet_thickness_mm, usual_thickness_sigma_mm});
   const ThermoformModel model({object}, model_options);
   SimulationBag bag(model);
   MeasuringPlanOptions plan_options;
   plan_options.points = o.mark_count;
   plan_options.measured = static_cast<Eigen::Index>(measured.size());
+  plan_options.measured_beside = static_cast<Eigen::Index>(measured_thickness.size());
   plan_options.min_distance = min_distance_mm / model.measurements().front().extent_mm;
   MeasuringPlan plan;
   {
@@ -236,7 +246,7 @@ OperationResult run_evidence_plan_points(const OperationCall& call, const Json& 
   const auto two_digits = [](double value) { return std::round(100 * value) / 100; };
   for (const Eigen::Index row : plan.chosen) {
     MeasuredPoint mark = object.points[static_cast<std::size_t>(row)];
-    mark.place_mm = plan.expected.row(row).transpose();
+    mark.place_mm = plan.expected.front().row(row).transpose();
     list.push_back({{"number", drawing.first_number + static_cast<int>(chosen.size())},
                     {"sheet_x_mm", mark.sheet_mm.x()},
                     {"sheet_y_mm", mark.sheet_mm.y()},
@@ -253,6 +263,12 @@ OperationResult run_evidence_plan_points(const OperationCall& call, const Json& 
     notes.push_back("Only " + std::to_string(chosen.size()) + " marks tell anything more; a finer grid has others.");
   result.report["sentence"] = plan_sentence(model, plan, measured.size());
   result.report["marks"] = std::move(list);
+  result.report["rim"] = Json::array();
+  for (const RimPlace& place : rim)
+    result.report["rim"].push_back({{"side", place.side},
+                                    {"sheet_x_mm", place.sheet_mm.x()},
+                                    {"sheet_y_mm", place.sheet_mm.y()},
+                                    {"expected_mm", simulation.options.sheet_thickness_mm}});
   result.report["causes"] = causes_json(model, plan);
   result.report["information_nats"] = plan.information.empty() ? plan.information_of_measured : plan.information.back();
   result.report["information_of_measured_nats"] = plan.information_of_measured;
@@ -271,7 +287,7 @@ OperationResult run_evidence_plan_points(const OperationCall& call, const Json& 
       if (info.name == name && call.wants(name)) result.outputs.push_back(make_output(info, std::move(bytes)));
   };
   add("marks.svg", to_bytes(marks_svg(drawing)));
-  add("measured.csv", to_bytes(form_csv(measured, chosen)));
+  add("measured.csv", to_bytes(measuring_form_csv({measured, chosen, measured_thickness, rim})));
   add("mould.obj", obj);
   const auto setup = call.inputs.find("setup");
   add("setup.json", setup != call.inputs.end()

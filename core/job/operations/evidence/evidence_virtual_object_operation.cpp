@@ -21,7 +21,8 @@ std::vector<OutputInfo> evidence_virtual_object_outputs() {
 }
 
 std::vector<ReportField> evidence_virtual_object_report_fields() {
-  return {{"points", "Measured points", "", "Number of measured points: rows of measured.csv."},
+  return {{"points", "Measured points", "", "Number of measured points."},
+          {"thickness_readings", "Thickness readings", "", "Number of places at which the thickness was measured."},
           {"triangles", "Triangles", "", "Number of triangles in the simulated sheet."},
           {"seconds_simulation", "Simulation", "s", "Time for the simulation; 0 if an earlier one was used again."},
           {"peak_memory_mb", "Peak memory", "MB", "Largest amount of memory that the process used."},
@@ -39,18 +40,20 @@ OperationResult run_evidence_virtual_object(const OperationCall& call, const Jso
   }
   const ThermoformOptions& o = simulation.options;
   constexpr MeasuredSurface surface = MeasuredSurface::outer;  // what a scanner sees
-  const std::vector<MeasuredPoint> points =
-      scan_virtually(simulated.result->sheet, o, surface, effects, read_parameters<VirtualScan>(scan));
+  const auto own_scan = read_parameters<VirtualScan>(scan);
+  const std::vector<MeasuredPoint> points = scan_virtually(simulated.result->sheet, o, surface, effects, own_scan);
+  const std::vector<MeasuredThickness> thickness = gauge_virtually(simulated.result->sheet, o, effects, own_scan);
   Model mould;
   mould.mesh = simulated.mould.placement(simulated.mould.shape->mesh);
   const Bytes obj = write_model(mould, MeshFormat::obj, call.context);
   const Bytes setup = to_bytes(write_object_setup(o, surface).dump(1) + "\n"),
-              measured = to_bytes(write_measured_points(points));
+              measured = to_bytes(add_measured_thickness(write_measured_points(points), thickness));
   Json truth = write_parameters(o);
   truth.update(write_parameters(effects));
 
   OperationResult result;
   result.report["points"] = points.size();
+  result.report["thickness_readings"] = thickness.size();
   result.report["triangles"] = simulated.result->sheet.mesh.face_count();
   result.report["seconds_simulation"] = simulated.reused ? 0.0 : simulated.result->seconds;
   result.report["notes"] = simulated.result->placement.notes;

@@ -46,6 +46,7 @@ const report: Report = {
   gain_share: 0.5,
   gain_interval: [0.4, 0.6],
   unseen: { objects: ['bowl'], error_before_mm: 1, error_after_mm: 0.5, gain_share: 0.5 },
+  beside: [{ object: 'lamp, thickness', readings: 4, error_before_mm: 0.12, error_after_mm: 0.03 }],
   noise_floor_mm: 0.12,
   noise: [{ object: 'lamp', sigma_mm: 0.08 }],
   hypotheses: [
@@ -86,6 +87,7 @@ describe('a diagnosis', () => {
       '60\u2009% for “Uneven heating”.',
       'On points that were left out of the fit, the error falls from 0.28\u2009mm to 0.14\u2009mm.',
       'On the object kept for checking, the error falls from 1.0\u2009mm to 0.50\u2009mm.',
+      'lamp, thickness, 4 readings: the error falls from 0.12\u2009mm to 0.030\u2009mm.',
       'Another explanation is nearly as likely.',
     ]);
     const nothing = readDiagnosis({ ...report, reading: 'none', verdict: ['none'], doubts: [] });

@@ -61,6 +61,13 @@ export interface Diagnosis {
   /** Pairs that look alike, with the measurement that would tell. */
   readonly alike: readonly { readonly labels: readonly string[]; readonly measurement: string }[];
   readonly gains: readonly Gain[];
+  /** What was measured beside places, such as thickness: mean errors on held-out data. */
+  readonly beside: readonly {
+    readonly title: string;
+    readonly readings: number;
+    readonly before_mm: number;
+    readonly after_mm: number;
+  }[];
   readonly noiseFloor_mm: number;
   /** Standard deviation of one coordinate, by object. */
   readonly sigma_mm: ReadonlyMap<string, number>;
@@ -152,6 +159,12 @@ export function readDiagnosis(report: Report): Diagnosis {
       gainOf(report, false, 'Points left out', 'of the fit'),
       ...(isObject(unseen) ? [gainOf(unseen, true, 'Kept for checking', objects.join(', '))] : []),
     ],
+    beside: list(report['beside']).map((one) => ({
+      title: text(one['object']),
+      readings: number(one['readings']),
+      before_mm: number(one['error_before_mm']),
+      after_mm: number(one['error_after_mm']),
+    })),
     noiseFloor_mm: figure(report, 'noise_floor_mm') ?? 0,
     sigma_mm: new Map(
       list(report['noise']).map((noise) => [text(noise['object']), number(noise['sigma_mm'])]),

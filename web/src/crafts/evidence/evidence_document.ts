@@ -27,6 +27,8 @@ export interface MeasuredObject {
   readonly pack: BlobReference;
   readonly files: Readonly<Record<ObjectFile, BlobReference>>;
   readonly points: number;
+  /** Number of thickness readings; missing in projects kept before these were read. */
+  readonly thickness?: number;
   readonly use: Use;
 }
 

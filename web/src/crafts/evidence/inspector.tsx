@@ -159,6 +159,7 @@ function ObjectRow({ session, object }: { session: EvidenceSession; object: Meas
         <strong class="clip">{object.name}</strong>
         <span>
           {formatCount(object.points)} points
+          {object.thickness ? `, ${formatCount(object.thickness)} thickness` : ''}
           {useWords[object.use]}
         </span>
       </button>

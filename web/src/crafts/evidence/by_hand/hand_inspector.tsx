@@ -11,6 +11,7 @@ import { evidence, planning } from '../evidence_document';
 import type { EvidenceSession } from '../evidence_session';
 import type { ByHand, HandPlan } from './hand_marks';
 import { measuredMarks, minMeasured, outlooksIn, problemOf } from './hand_marks';
+import { rimProblem } from './rim';
 import { keyOf, moulds, openingOf, planMarks, planNow, takeMarks } from './plan_marks';
 
 const ownGroup = 'Measuring by hand';
@@ -136,8 +137,10 @@ function MainButtons({ session, byHand, plan }: MainButtonsProps) {
       </>
     );
   const wrong = byHand.marks.findIndex((mark) => problemOf(mark, byHand.origin, openingOf(byHand)) !== '');
-  const unfinished =
-    wrong >= 0 ? `Mark ${wrong + 1} is not right yet: read it once more, or leave it blank` : undefined;
+  const wrongRim = byHand.rim?.find((reading) => rimProblem(reading) !== '');
+  const notRight =
+    wrong >= 0 ? `Mark ${wrong + 1}` : wrongRim ? `The rim’s thickness, ${wrongRim.side},` : undefined;
+  const unfinished = notRight && `${notRight} is not right yet: read it once more, or leave it blank`;
   const few =
     measured < minMeasured
       ? `${measured} of ${byHand.marks.length} marks are measured; ${minMeasured} are the fewest that a diagnosis takes`

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { describe, expect, it } from 'vitest';
 import type { ByHand, HandMark } from './hand_marks';
+import { lengthIn } from './lengths';
 import {
   expectedAt,
   fromOrigin,
-  lengthIn,
   marksIn,
   measuredMarks,
   measuredTable,
@@ -59,6 +59,11 @@ describe('marks measured by hand', () => {
     expect(measuredMarks(some, opening)).toHaveLength(1);
     expect(measuredTable(some, opening, 0.3)).toBe(
       'sheet_x_mm,sheet_y_mm,x_mm,y_mm,z_mm,sigma_mm\n-30,50,-30,48,16.2,0.3\n',
+    );
+    const rim = [{ side: 'left', sheet_mm: [-115, 0] as const, expected_mm: 1, typed: '1.1' }];
+    expect(measuredTable({ ...some, rim }, opening, 0.3)).toBe(
+      'sheet_x_mm,sheet_y_mm,x_mm,y_mm,z_mm,sigma_mm,thickness_mm,thickness_sigma_mm\n' +
+        '-30,50,-30,48,16.2,0.3,,\n-115,0,,,,,1.1,0\n',
     );
   });
 

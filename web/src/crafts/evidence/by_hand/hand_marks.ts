@@ -3,6 +3,9 @@
 import type { JsonObject, Report } from '../../../jobs/contract';
 import type { BlobReference } from '../../../project/document';
 import { isObject } from '../../../project/document';
+import { lengthIn } from './lengths';
+import type { RimReading } from './rim';
+import { rimRows, thicknessColumns } from './rim';
 
 type Pair = readonly [number, number];
 type Triple = readonly [number, number, number];
@@ -43,6 +46,8 @@ export interface ByHand {
   readonly parameters: JsonObject;
   readonly origin: Origin;
   readonly marks: readonly HandMark[];
+  /** Missing in projects that were kept before rims were measured. */
+  readonly rim?: readonly RimReading[];
   readonly plan: HandPlan | null;
 }
 
@@ -51,13 +56,6 @@ const untyped: Typed = ['', '', ''];
 export const minMeasured = 6;
 /** Faults move a mark by some millimetres; what is farther off was misread or mistyped. */
 const far_mm = 15;
-
-/** "12.5" and "12,5"; null for anything else. */
-export function lengthIn(text: string): number | null {
-  const plain = text.trim().replace(',', '.').replace('\u2212', '-');
-  if (!/^[+-]?(\d+\.?\d*|\.\d+)$/.test(plain)) return null;
-  return Number(plain);
-}
 
 const offset = (origin: Origin, opening_mm: Pair): Triple =>
   origin === 'corner' ? [opening_mm[0] / 2, opening_mm[1] / 2, 0] : [0, 0, 0];
@@ -117,7 +115,10 @@ export function measuredTable(byHand: ByHand, opening_mm: Pair, sigma_mm: number
     const place = placeOf(mark, byHand.origin, opening_mm);
     return place ? [[...mark.sheet_mm, ...place.map((at) => Number(at.toFixed(4))), sigma_mm].join(',')] : [];
   });
-  return ['sheet_x_mm,sheet_y_mm,x_mm,y_mm,z_mm,sigma_mm', ...rows, ''].join('\n');
+  const columns = 'sheet_x_mm,sheet_y_mm,x_mm,y_mm,z_mm,sigma_mm';
+  const rim = rimRows(byHand.rim ?? []);
+  if (rim.length === 0) return [columns, ...rows, ''].join('\n');
+  return [`${columns},${thicknessColumns}`, ...rows.map((row) => `${row},,`), ...rim, ''].join('\n');
 }
 
 const numbersIn = (value: unknown, names: readonly string[]): number[] | null => {

@@ -8,6 +8,7 @@ import { Pane } from '../pictures/maps';
 import type { ByHand, HandMark, Outlook } from './hand_marks';
 import { expectedAt, fromOrigin, outlooksIn, placeOf, problemOf } from './hand_marks';
 import { MarksPicture } from './marks_picture';
+import { RimNumbers } from './rim_numbers';
 import { openingOf, planNow } from './plan_marks';
 
 const axes = ['x', 'y', 'z'] as const;
@@ -37,7 +38,7 @@ export function HandPanel({ session, byHand }: { session: EvidenceSession; byHan
             </li>
             <li>
               <strong>Measure each mark</strong> with calipers and a depth gauge, while the sheet is still
-              clamped if you can, and type the numbers here.
+              clamped if you can, and how thick its rim is. Type the numbers here.
             </li>
           </ol>
         </Pane>
@@ -55,6 +56,7 @@ export function HandPanel({ session, byHand }: { session: EvidenceSession; byHan
       </div>
       <Pane title="Measured" detail="millimetres">
         <Numbers session={session} byHand={byHand} onHover={(mark) => (hovered.value = mark)} />
+        <RimNumbers session={session} byHand={byHand} />
       </Pane>
     </div>
   );

@@ -49,6 +49,9 @@ export function MarksPicture({ byHand, report, hovered }: MarksPictureProps) {
           </g>
         );
       })}
+      {(byHand.rim ?? []).map(({ side, sheet_mm: [x, y], typed }) => (
+        <circle key={side} class={`marks-rim ${typed ? 'done' : ''}`} cx={x} cy={-y} r="3" />
+      ))}
       <text class="marks-front" x="0" y={length / 2 + 8}>
         front
       </text>

@@ -18,6 +18,7 @@ import type { EvidenceSession } from '../evidence_session';
 import { takeObject } from '../objects/take_files';
 import type { ByHand, HandMould } from './hand_marks';
 import { marksIn, measuredMarks, measuredTable, pairIn } from './hand_marks';
+import { measuredRim, rimIn } from './rim';
 
 const formingRoom = 'thermoform';
 
@@ -82,6 +83,7 @@ export async function planMarks(session: EvidenceSession, byHand: ByHand): Promi
   const opening = openingOf(byHand);
   const same = planNow(session, byHand) !== null;
   const kept = same ? measuredMarks(byHand, opening) : [];
+  const keptRim = same ? measuredRim(byHand.rim ?? []) : [];
   await session.busy(
     'exporting',
     'plan of the marks',
@@ -94,7 +96,11 @@ export async function planMarks(session: EvidenceSession, byHand: ByHand): Promi
         ...profileInputs(machineProfile.of(projects.document.value).profile),
       };
       if (kept.length > 0) {
-        const table = measuredTable({ ...byHand, marks: kept }, opening, sigmaOf(session, byHand));
+        const table = measuredTable(
+          { ...byHand, marks: kept, rim: keptRim },
+          opening,
+          sigmaOf(session, byHand),
+        );
         const { blob } = await session.keep(new TextEncoder().encode(table), 'text/csv');
         inputs['measured'] = { sha256: blob, file_name: 'measured.csv' };
       }
@@ -115,7 +121,8 @@ export async function planMarks(session: EvidenceSession, byHand: ByHand): Promi
         drawing: await session.keep(await bytesOf(done, 'marks.svg'), 'image/svg+xml'),
       };
       const marks = [...kept, ...marksIn(done.report)];
-      options.do(evidence.changeByHand({ plan, marks }, 'Choose the marks'));
+      const rim = [...(kept.length > 0 ? keptRim : []), ...rimIn(done.report)];
+      options.do(evidence.changeByHand({ plan, marks, rim }, 'Choose the marks'));
     },
     (error) => session.report(error, 'Could not choose the marks'),
   );

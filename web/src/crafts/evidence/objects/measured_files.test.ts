@@ -2,7 +2,14 @@
 import { strToU8, unzipSync, zipSync } from 'fflate';
 import { describe, expect, it } from 'vitest';
 import type { Bytes } from './measured_files';
-import { countPoints, missingFrom, objectsInArchive, packObject, roleOf, sortFiles } from './measured_files';
+import {
+  countReadings,
+  missingFrom,
+  objectsInArchive,
+  packObject,
+  roleOf,
+  sortFiles,
+} from './measured_files';
 
 const bytes = (text: string) => strToU8(text) as Bytes;
 const file = (name: string, folder?: string): File => {
@@ -67,10 +74,14 @@ describe('what is dropped on the evidence room', () => {
   });
 
   it('packs the same files into the same bytes', () => {
-    const files = { 'mould.obj': bytes('v'), 'setup.json': bytes('{}'), 'measured.csv': bytes('a\n1\n2\n') };
+    const files = { 'mould.obj': bytes('v'), 'setup.json': bytes('{}'), 'measured.csv': bytes('x_mm\n1\n2\n') };
     const pack = packObject(files);
     expect(pack).toEqual(packObject({ ...files }));
     expect(names(unzipSync(pack))).toEqual([...three].sort());
-    expect(countPoints(files['measured.csv'])).toBe(2);
+    expect(countReadings(files['measured.csv'])).toEqual({ points: 2, thickness: 0 });
+    const mixed = bytes(
+      '\ufeffsheet_x_mm,sheet_y_mm,x_mm,thickness_mm\r\n0,0,1,\n0,0,1,0.9\n9,0,,1.1\n9,0,,\n',
+    );
+    expect(countReadings(mixed)).toEqual({ points: 2, thickness: 2 });
   });
 });

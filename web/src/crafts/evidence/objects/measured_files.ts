@@ -121,13 +121,19 @@ export function packObject(files: Readonly<Record<ObjectFile, Bytes>>): Bytes {
   return zipSync(zippable) as Bytes;
 }
 
-/** Rows below the header. */
-export function countPoints(csv: Bytes): number {
-  return Math.max(
-    0,
-    new TextDecoder()
-      .decode(csv)
-      .split(/\r?\n/)
-      .filter((line) => line.trim() !== '').length - 1,
-  );
+/** How many rows of measured.csv have a place, and how many a thickness. */
+export function countReadings(csv: Bytes): { readonly points: number; readonly thickness: number } {
+  const [header = '', ...rows] = new TextDecoder()
+    .decode(csv)
+    .split(/\r?\n/)
+    .filter((line) => line.trim() !== '');
+  const columns = header
+    .replace('\ufeff', '')
+    .split(',')
+    .map((name) => name.trim());
+  const filled = (name: string): number => {
+    const at = columns.indexOf(name);
+    return at < 0 ? 0 : rows.filter((row) => (row.split(',')[at] ?? '').trim() !== '').length;
+  };
+  return { points: filled('x_mm'), thickness: filled('thickness_mm') };
 }

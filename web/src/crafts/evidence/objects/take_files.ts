@@ -10,7 +10,7 @@ import type { Services } from '../../../shared/session/services';
 import type { EvidenceDocument, MeasuredObject, ObjectFile, Scan } from '../evidence_document';
 import { evidence, freeName, objectFiles, registering } from '../evidence_document';
 import type { Bytes, Found } from './measured_files';
-import { countPoints, missingFrom, packObject, plainName } from './measured_files';
+import { countReadings, missingFrom, packObject, plainName } from './measured_files';
 import { scanInputs } from '../scan/scan_files';
 
 /** The part of the room that files are taken into. */
@@ -66,7 +66,7 @@ export async function takeObject(
     name: freeName(name, objects),
     pack,
     files: kept as MeasuredObject['files'],
-    points: countPoints(whole['measured.csv'] as Bytes),
+    ...countReadings(whole['measured.csv'] as Bytes),
     use: 'fit',
   };
   change(evidence.addObject(object));

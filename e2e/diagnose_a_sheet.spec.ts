@@ -80,6 +80,18 @@ test(
     await page.getByRole('radio', { name: 'On the object' }).click();
     await expect(page.getByText(/^Arrows from measured to simulated/)).toBeVisible();
     await expectAccessible(page, 'on the object');
+    await page.getByRole('button', { name: 'See the print before and after' }).click();
+    await expect(page.getByRole('radio', { name: 'Next print' })).toBeChecked();
+    for (const kind of ['as the calibrated simulation', 'as the simulation with the cause'])
+      await expect(
+        page.getByRole('img', {
+          name: new RegExp(`^Test pattern on the flat sheet, ${kind} has it printed`),
+        }),
+      ).toBeVisible();
+    await expect(
+      page.getByRole('img', { name: /^Shift of the print’s features.* mm on average/ }),
+    ).toBeVisible();
+    await expectAccessible(page, 'next print');
     await page.getByRole('radio', { name: 'Flat maps' }).click();
 
     const waiting = page.waitForEvent('download');

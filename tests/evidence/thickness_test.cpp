@@ -200,13 +200,12 @@ TEST_CASE("Thickness.ASheetThatIsThickerOnOneSideShowsAtItsRim") {
     object.setup.sheet_turned = turned;
     const ThermoformModel model({object}, options);
     REQUIRE(model.measurements().size() == 2);
-    const int m = model.thickness_of(0);
-    REQUIRE(m == 1);
     CHECK(model.measurements()[1].beside == 0);
+    CHECK(model.measurements()[1].name == object.name + ", thickness of the rim");
     Eigen::VectorXd u = model.nominal();
     for (std::size_t p = 0; p < model.parameters().size(); ++p)
       if (model.parameters()[p].name == "thickness_wedge_x") u[static_cast<Eigen::Index>(p)] = 0.1;
-    const Eigen::VectorXd thickness = model.predict(m, u, Context()) / model.measurements()[1].scale;
+    const Eigen::VectorXd thickness = model.predict(1, u, Context()) / model.measurements()[1].scale;
     // Sheet coordinates count from the sheet's own edges, however it lay in the clamp.
     const double at_rim = 0.1 * 2 * rim[1].sheet_mm.x() / o.clamp_opening_x_mm;
     CHECK_THAT(thickness[0], WithinRel(o.sheet_thickness_mm * (1 - at_rim), 1e-9));
@@ -217,6 +216,8 @@ TEST_CASE("Thickness.ASheetThatIsThickerOnOneSideShowsAtItsRim") {
 
 TEST_CASE("Thickness.WithinTheOpeningIsThatOfTheSimulatedSheet") {
   FormedObject object = plain_object();
+  const auto o = read_parameters<ThermoformOptions>(object.setup.parameters);
+  object.thickness.push_back({rim_places(o).front().sheet_mm, 0.9, 0.05});
   for (int i = -3; i <= 3; ++i) object.thickness.push_back({Vec2(9 * i, 5 * i), 0.7, 0.05});
   ThermoformModelOptions options;
   options.triangles = 1200;
@@ -228,6 +229,12 @@ TEST_CASE("Thickness.WithinTheOpeningIsThatOfTheSimulatedSheet") {
     CHECK(thickness[i] <= sheet->thickness_mm.maxCoeff());
   }
   CHECK(thickness.minCoeff() < 0.9 * thickness.maxCoeff());
+  // The rim is a measurement of its own, known three times as well.
+  REQUIRE(model.measurements().size() == 3);
+  CHECK(thickness.size() == 7);
+  CHECK(model.thickness_readings(2).size() == 1);
+  CHECK_THAT(model.measurements()[2].scale, WithinRel(3 * model.measurements()[1].scale, 1e-9));
+  CHECK_THAT(model.measurements()[2].measured(0, 0) / model.measurements()[2].scale, WithinRel(0.9, 1e-12));
 }
 
 TEST_CASE("Thickness.WrongReadingsGetAClearSentence") {

@@ -18,6 +18,8 @@ constexpr std::size_t max_sheets = 200;  // kept at a time; about 0.2 MB each
 /// The simulation's own error of thickness, RMS, as a share of the sheet's: what a finer mesh or the other elastic law
 /// changes (docs/evidence.md, "Thickness").
 constexpr double known_thickness_misfit = 0.03;
+constexpr double known_rim_misfit =
+    0.01;  // the same of the rim, which is not simulated: what sheets vary by from place to place
 
 /// What later readers of a stored simulation must find unchanged; raised when the simulation computes something else.
 constexpr const char* simulation_version = "thermoform-2:";
@@ -95,8 +97,18 @@ ThermoformModel::ThermoformModel(std::vector<FormedObject> objects, ThermoformMo
   for (ModelParameter& p : parameters_)
     if (p.role == ParameterRole::base && options_.profile.parameters.contains(p.name)) p.prior_sd *= known_share;
   for (const FormedObject& object : objects_) add_places(object);
-  for (int object = 0; object < static_cast<int>(objects_.size()); ++object)
-    if (!objects_[static_cast<std::size_t>(object)].thickness.empty()) add_thickness(object);
+  for (int object = 0; object < static_cast<int>(objects_.size()); ++object) {
+    std::vector<MeasuredThickness> rim = objects_[static_cast<std::size_t>(object)].thickness;
+    const auto own = read_parameters<ThermoformOptions>(objects_[static_cast<std::size_t>(object)].setup.parameters);
+    const auto within = std::stable_partition(rim.begin(), rim.end(), [&](const MeasuredThickness& reading) {
+      return std::abs(reading.sheet_mm.x()) > 0.5 * own.clamp_opening_x_mm ||
+             std::abs(reading.sheet_mm.y()) > 0.5 * own.clamp_opening_y_mm;
+    });
+    std::vector<MeasuredThickness> formed(within, rim.end());
+    rim.erase(within, rim.end());
+    add_thickness(object, std::move(formed), ", thickness", known_thickness_misfit);
+    add_thickness(object, std::move(rim), ", thickness of the rim", known_rim_misfit);
+  }
   if (options_.triangles / 4 < fewest_triangles) return;
   ThermoformModelOptions coarse = options_;
   coarse.triangles /= 4;
@@ -119,28 +131,25 @@ void ThermoformModel::add_places(const FormedObject& object) {
   measurements_.push_back(std::move(m));
 }
 
-void ThermoformModel::add_thickness(int object) {
+void ThermoformModel::add_thickness(int object, std::vector<MeasuredThickness> readings, const char* what,
+                                    double misfit_share) {
+  if (readings.empty()) return;
   const FormedObject& own_object = objects_[static_cast<std::size_t>(object)];
   const auto own = read_parameters<ThermoformOptions>(own_object.setup.parameters);
   Measurement m;
-  m.name = own_object.name + ", thickness";
+  m.name = own_object.name + what;
   m.beside = object;
-  m.scale = known_misfit() / (known_thickness_misfit * own.sheet_thickness_mm);
-  m.place = in_opening(own_object.thickness, own);
+  m.scale = known_misfit() / (misfit_share * own.sheet_thickness_mm);
+  m.place = in_opening(readings, own);
   m.extent_mm = std::max(own.clamp_opening_x_mm, own.clamp_opening_y_mm);
   m.measured.resize(m.place.rows(), 1);
   m.sigma.resize(m.place.rows());
   for (Eigen::Index i = 0; i < m.place.rows(); ++i) {
-    m.measured(i, 0) = m.scale * own_object.thickness[static_cast<std::size_t>(i)].thickness_mm;
-    m.sigma[i] = m.scale * own_object.thickness[static_cast<std::size_t>(i)].sigma_mm;
+    m.measured(i, 0) = m.scale * readings[static_cast<std::size_t>(i)].thickness_mm;
+    m.sigma[i] = m.scale * readings[static_cast<std::size_t>(i)].sigma_mm;
   }
   measurements_.push_back(std::move(m));
-}
-
-int ThermoformModel::thickness_of(int object) const {
-  for (std::size_t m = 0; m < measurements_.size(); ++m)
-    if (measurements_[m].beside == object) return static_cast<int>(m);
-  return -1;
+  thickness_.push_back(std::move(readings));
 }
 
 const ForwardModel* ThermoformModel::finer() const {
@@ -260,7 +269,9 @@ Eigen::MatrixXd ThermoformModel::predict(int measurement, const Eigen::VectorXd&
   const ThermoformOptions o = simulation_options(object, u);
   if (!measured.is_place())
     return measured.scale *
-           predict_thickness(*sheet, in_clamp(own.thickness, own.setup.sheet_turned), o, measurement_effects(u));
+           predict_thickness(
+               *sheet, in_clamp(thickness_readings(static_cast<std::size_t>(measurement)), own.setup.sheet_turned), o,
+               measurement_effects(u));
   const double plate_z = own.setup.base_plate_end_z_mm;
   FormedSheet raised = *sheet;
   raised.mesh.V.col(2).array() += plate_z;

@@ -21,7 +21,8 @@ struct ThermoformModelOptions {
   std::vector<std::string> without;  // causes that are not considered
 };
 
-/// Its measurements are the places of each object in their order, then the thickness of each object that has any.
+/// Its measurements are the places of each object in their order; then, of each object that has any, the thickness
+/// within the clamp opening and that of the rim.
 class ThermoformModel : public ForwardModel {
  public:
   /// `objects`: at least one, each checked.
@@ -40,8 +41,10 @@ class ThermoformModel : public ForwardModel {
   const ForwardModel* finer() const override;
 
   const std::vector<FormedObject>& objects() const { return objects_; }
-  /// Index of the measurement of this object's thickness; -1 where it has none.
-  int thickness_of(int object) const;
+  /// The readings of a measurement that is not of places, row by row.
+  const std::vector<MeasuredThickness>& thickness_readings(std::size_t measurement) const {
+    return thickness_[measurement - objects_.size()];
+  }
   /// The simulation's parameters for an object at u, and the measurement's.
   ThermoformOptions simulation_options(int object, const Eigen::VectorXd& u) const;
   MeasurementEffects measurement_effects(const Eigen::VectorXd& u) const;
@@ -52,7 +55,7 @@ class ThermoformModel : public ForwardModel {
 
  private:
   void add_places(const FormedObject& object);
-  void add_thickness(int object);
+  void add_thickness(int object, std::vector<MeasuredThickness> readings, const char* what, double misfit_share);
   /// Names a simulation: everything it depends on.
   std::string key_of(const FormedObject& object, const ThermoformOptions& options) const;
 
@@ -61,6 +64,7 @@ class ThermoformModel : public ForwardModel {
   std::vector<ModelParameter> parameters_;
   std::vector<Cause> causes_;
   std::vector<Measurement> measurements_;
+  std::vector<std::vector<MeasuredThickness>> thickness_;  // of the measurements after those of places
   std::unique_ptr<const ThermoformModel> cheaper_;
   mutable std::mutex mutex_;
   mutable std::unique_ptr<const ThermoformModel> finer_;

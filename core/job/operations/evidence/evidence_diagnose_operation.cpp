@@ -91,18 +91,16 @@ std::string thickness_rows(const ThermoformModel& model, const Predictions& cali
                            const std::vector<Eigen::VectorXd>& weights) {
   std::string text;
   char line[240];
-  for (std::size_t object = 0; object < model.objects().size(); ++object) {
-    const FormedObject& own = model.objects()[object];
-    if (own.thickness.empty()) continue;
-    const auto m = static_cast<std::size_t>(model.thickness_of(static_cast<int>(object)));
+  for (std::size_t m = model.objects().size(); m < model.measurements().size(); ++m) {
     const double scale = model.measurements()[m].scale;
-    for (std::size_t i = 0; i < own.thickness.size(); ++i) {
-      const MeasuredThickness& reading = own.thickness[i];
+    const std::vector<MeasuredThickness>& readings = model.thickness_readings(m);
+    for (std::size_t i = 0; i < readings.size(); ++i) {
+      const MeasuredThickness& reading = readings[i];
       const auto row = static_cast<Eigen::Index>(i);
       std::snprintf(line, sizeof line, ",%.7g,%.7g,%.5g,%.4g,%.5g,%.5g,%.4g\n", reading.sheet_mm.x(),
                     reading.sheet_mm.y(), reading.thickness_mm, reading.sigma_mm, calibrated[m](row, 0) / scale,
                     extended[m](row, 0) / scale, weights[m][row] * scale * scale);
-      text += table_name(own.name) + line;
+      text += table_name(model.objects()[static_cast<std::size_t>(model.measurements()[m].beside)].name) + line;
     }
   }
   return text;

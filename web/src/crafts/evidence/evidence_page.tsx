@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-import { signal } from '@preact/signals';
 import { EmptyRoom } from '../../shared/panels/empty_room';
 import { Button, formatCount, formatNumber, Segmented, Sheet, useLasting, withUnit } from '../../ui';
 import { outputOf } from '../../shared/session/full_solve';
@@ -15,6 +14,8 @@ import { Inspector } from './inspector';
 import { Maps, modelWords, Pane } from './pictures/maps';
 import { Notes } from './notes';
 import { ObjectView } from './pictures/object_view';
+import { PrintMaps } from './pictures/print_maps';
+import { minPrintPoints } from './pictures/print_picture';
 import { simulatedIn } from './pictures/residuals';
 import { ResultsStrip } from './results_strip';
 import { ScanInspector } from './scan/scan_inspector';
@@ -23,6 +24,8 @@ import { begin } from './by_hand/plan_marks';
 import { HandInspector } from './by_hand/hand_inspector';
 import { HandPanel } from './by_hand/hand_panel';
 import { PatternButton } from './pattern_dialog';
+import type { Diagnosis } from './diagnosis';
+import { view } from './view_choice';
 import { VirtualObject } from './objects/virtual_object';
 
 export interface EvidencePageProps {
@@ -30,13 +33,14 @@ export interface EvidencePageProps {
   readonly onChooseFile: () => void;
 }
 
-type View = 'plane' | 'object';
-/** It outlives a visit to another page. */
-const view = signal<View>('plane');
-const views = [
-  { value: 'plane', label: 'Flat maps' },
-  { value: 'object', label: 'On the object' },
-] as const;
+/** Why there is no picture of the next print; undefined where there is one. */
+function noPrint({ residuals }: Look, diagnosis: Diagnosis | null): string | undefined {
+  if (diagnosis === null || diagnosis.named.length === 0 || residuals.extended === null)
+    return 'A diagnosis that names a cause shows how the next print changes';
+  return residuals.count < minPrintPoints
+    ? `Fewer than ${minPrintPoints} points make no picture of a print`
+    : undefined;
+}
 
 export function EvidencePage({ session, onChooseFile }: EvidencePageProps) {
   useRoomKeys(session, () => ({
@@ -129,13 +133,19 @@ function Bench({ session }: { session: EvidenceSession }) {
   const waiting = useLasting(look === null && session.looking.value);
   const diagnosis = session.diagnosis.value;
   const calibrated = session.mode.value === 'calibrate' ? session.result.value : null;
+  const without = look ? noPrint(look, diagnosis) : 'Nothing is compared yet';
+  const shown = view.value === 'print' && without ? 'plane' : view.value;
   return (
     <div class="bench">
       <div class="bench-head">
         <Segmented
           label="View"
-          options={views}
-          value={view.value}
+          options={[
+            { value: 'plane', label: 'Flat maps' },
+            { value: 'object', label: 'On the object' },
+            { value: 'print', label: 'Next print', disabledReason: without },
+          ]}
+          value={shown}
           onChange={(value) => (view.value = value)}
         />
         {look ? <ReadOut session={session} look={look} /> : null}
@@ -144,8 +154,10 @@ function Bench({ session }: { session: EvidenceSession }) {
         <p class="waiting" role="status">
           {waiting ? 'Simulating with the machine settings as they are…' : ''}
         </p>
-      ) : view.value === 'plane' ? (
+      ) : shown === 'plane' ? (
         <Maps session={session} look={look} />
+      ) : shown === 'print' ? (
+        <PrintMaps session={session} look={look} />
       ) : (
         <ObjectView session={session} look={look} />
       )}

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A diagnosis in five steps: how far off, where, why, what to do, how sure.
 import type { ComponentChildren } from 'preact';
-import { formatNumber, withUnit } from '../../ui';
+import { Button, formatNumber, withUnit } from '../../ui';
 import type { Diagnosis, Gain } from './diagnosis';
 import { percent, readingWords } from './diagnosis';
 import type { EvidenceSession } from './evidence_session';
 import type { Residuals } from './pictures/residuals';
+import { minPrintPoints } from './pictures/print_picture';
 import { distancesOf, meanOf, movedBy, worstRegion } from './pictures/residuals';
+import { view } from './view_choice';
 
 const length = (value_mm: number): string => withUnit(formatNumber(value_mm, 2), 'mm');
 
@@ -30,9 +32,16 @@ export function Story({ session, diagnosis }: { session: EvidenceSession; diagno
               {sentence}
             </span>
           ))}
-          {residuals && diagnosis.reading !== 'none' && diagnosis.reading !== 'unknown'
-            ? printWords(residuals)
-            : null}
+          {residuals && diagnosis.named.length > 0 ? (
+            <>
+              {printWords(residuals)}
+              {residuals.count >= minPrintPoints ? (
+                <Button size="small" class="story-look" onClick={() => (view.value = 'print')}>
+                  See the print before and after
+                </Button>
+              ) : null}
+            </>
+          ) : null}
         </Step>
         <Step title="How sure">
           {sureWords(diagnosis).map((sentence) => (

@@ -6,7 +6,7 @@ import { formatNumber, withUnit } from '../../../ui';
 import type { ColourMapName, ColourMapping } from '../../../view';
 import { legendFor, sampleStops, stopsOf } from '../../../view';
 import type { EvidenceSession, Look } from '../evidence_session';
-import type { Arrow, Extent, Residuals } from './residuals';
+import type { Arrow, Residuals } from './residuals';
 import {
   arrowsOf,
   cellSide,
@@ -22,25 +22,11 @@ import {
   scaleFor,
   simulatedIn,
 } from './residuals';
-import type { Frame } from './sheet_surface';
+import type { Frame } from './frame';
+import { frameOf, placeOn } from './frame';
 import { rasterise, triangulate } from './sheet_surface';
 
-/** Of the pictures; the page scales them. */
-const widthPx = 300;
 const arrowCells = 9;
-
-function frameOf({ low, high }: Extent): Frame {
-  const margin = 0.03 * Math.max(high[0] - low[0], high[1] - low[1], 1);
-  const width_mm = high[0] - low[0] + 2 * margin;
-  const pixelsPerMm = widthPx / width_mm;
-  const heightPx = Math.round((high[1] - low[1] + 2 * margin) * pixelsPerMm);
-  return { widthPx, heightPx, pixelsPerMm, left_mm: low[0] - margin, top_mm: high[1] + margin };
-}
-
-const placeOn = ({ left_mm, top_mm, pixelsPerMm }: Frame, x: number, y: number): [number, number] => [
-  (x - left_mm) * pixelsPerMm,
-  (top_mm - y) * pixelsPerMm,
-];
 
 /** What stays the same while the model is switched, so that the two can be compared by eye. */
 function scalesOf(residuals: Residuals, sigma_mm: number) {
@@ -162,7 +148,7 @@ interface SheetMapProps {
   readonly onPainted?: (canvas: HTMLCanvasElement) => void;
 }
 
-function SheetMap(props: SheetMapProps) {
+export function SheetMap(props: SheetMapProps) {
   const { session, residuals, frame, triangles, values, mapping } = props;
   const canvas = useRef<HTMLCanvasElement>(null);
   useEffect(() => {

@@ -227,15 +227,19 @@ export function worstRegion(
   return { where, mean_mm: means[worst] ?? 0 };
 }
 
-/** How far the extended simulation has the points from where the calibrated one has them; null without one. */
-export function movedBy({
-  base,
-  extended,
-  count,
-}: Residuals): { readonly mean_mm: number; readonly largest_mm: number } | null {
-  if (extended === null || count === 0) return null;
-  const moved = Float64Array.from({ length: count }, (_, i) =>
-    Math.hypot(...[0, 1, 2].map((k) => (extended[3 * i + k] ?? 0) - (base[3 * i + k] ?? 0))),
+/** How far the extended simulation takes each point from where the calibrated one does, mm; 0 without one. */
+export const movesOf = ({ base, extended, count }: Residuals): Float64Array =>
+  Float64Array.from({ length: count }, (_, i) =>
+    extended === null
+      ? 0
+      : Math.hypot(...[0, 1, 2].map((k) => (extended[3 * i + k] ?? 0) - (base[3 * i + k] ?? 0))),
   );
+
+/** The same in two figures; null without an extended simulation. */
+export function movedBy(
+  residuals: Residuals,
+): { readonly mean_mm: number; readonly largest_mm: number } | null {
+  if (residuals.extended === null || residuals.count === 0) return null;
+  const moved = movesOf(residuals);
   return { mean_mm: meanOf(moved), largest_mm: moved.reduce((a, b) => Math.max(a, b), 0) };
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import fc from 'fast-check';
 import { describe, expect, it } from 'vitest';
-import type { Frame } from './sheet_surface';
+import type { Frame } from './frame';
 import { rasterise, triangulate } from './sheet_surface';
 
 const gridOf = (side: number, without: (x: number, y: number) => boolean = () => false): Float64Array =>

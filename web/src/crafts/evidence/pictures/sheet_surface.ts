@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Scattered points of the sheet as a surface: triangles between neighbours, and values between points.
 import Delaunator from 'delaunator';
+import type { Frame } from './frame';
 import type { Residuals } from './residuals';
 import { percentile } from './residuals';
 
@@ -27,16 +28,6 @@ export function triangulate({ sheet, count }: Pick<Residuals, 'sheet' | 'count'>
     kept.push(...(turn > 0 ? [a, b, c] : [a, c, b]));
   }
   return Uint32Array.from(kept);
-}
-
-/** A rectangle of the sheet as pixels; its first row is the back, as one looks at the sheet from above. */
-export interface Frame {
-  readonly widthPx: number;
-  readonly heightPx: number;
-  readonly pixelsPerMm: number;
-  /** Upper left corner, mm on the sheet. */
-  readonly left_mm: number;
-  readonly top_mm: number;
 }
 
 /** Linear between the points of each triangle; NaN where there is none. */

@@ -3,7 +3,6 @@
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/matchers/catch_matchers_floating_point.hpp>
 
-#include <atomic>
 #include <cmath>
 #include <random>
 
@@ -15,7 +14,7 @@
 #include "evidence/models/thermoform/thermoform_model.h"
 #include "evidence/planning/measuring_plan.h"
 #include "evidence/planning/point_information.h"
-#include "evidence/toy_model.h"
+#include "evidence/toy_with_thickness.h"
 #include "evidence/virtual_lab.h"
 
 namespace formwright {
@@ -24,6 +23,7 @@ namespace {
 using Catch::Matchers::WithinAbs;
 using Catch::Matchers::WithinRel;
 using evidence_test::ToyModel;
+using evidence_test::ToyWithThickness;
 
 /// u, measured n times by one gauge and k times, tenfold, by another that lies beside it.
 class TwoGauges : public ForwardModel {
@@ -107,43 +107,11 @@ TEST_CASE("Thickness.TellsAsMuchAsItsPrecision") {
   }
 }
 
-/// The toy, and its drift measured once more at places of its own.
-class ToyWithThickness : public ToyModel {
- public:
-  ToyWithThickness(int points, int readings) : ToyModel(points) {
-    Measurement m = ToyModel::measurements().front();
-    m.name = "toy, thickness";
-    m.beside = 0;
-    m.scale = 4;
-    m.place.conservativeResize(readings, 2);
-    m.measured.setZero(readings, 1);
-    m.sigma.setConstant(readings, 4 * 0.01);
-    measurements_ = {ToyModel::measurements().front(), m};
-  }
-  const std::vector<Measurement>& measurements() const override { return measurements_; }
-  Eigen::MatrixXd predict(int m, const Eigen::VectorXd& u, const Context& context) const override {
-    if (m == 0) return ToyModel::predict(0, u, context);
-    const Measurement& own = measurements_[1];
-    return own.scale * (1 - 0.1 * u[4] * own.place.col(0).array() + 0.02 * u[0] * own.place.col(1).array()).matrix();
-  }
-  void measure_all(const Eigen::VectorXd& u, unsigned seed) {
-    measure(u, 0.05, seed);
-    measurements_[0] = ToyModel::measurements().front();
-    std::mt19937 random(seed + 100);
-    std::normal_distribution<double> noise(0, 1);
-    measurements_[1].measured = predict(1, u, Context());
-    for (double& value : measurements_[1].measured.reshaped()) value += 0.04 * noise(random);
-  }
-
- private:
-  std::vector<Measurement> measurements_;
-};
-
 TEST_CASE("Thickness.IsEvidenceButNoDistance") {
   ToyWithThickness model(300, 40);
   Eigen::VectorXd u = model.nominal();
   u[4] = 1.2;
-  model.measure_all(u, 3);
+  model.measure_all(u, 0.05, 3);
   SimulationBag bag(model);
   Context context;
   const Diagnosis d = diagnose(bag, {}, context);

@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "evidence/diagnosis/explanations.h"
+#include "evidence/diagnosis/fitted_strength.h"
 
 namespace formwright {
 namespace {
@@ -224,21 +225,10 @@ class Diagnostician {
     for (const int cause : causes) {
       CauseFinding& finding = *std::find_if(result_.causes.begin(), result_.causes.end(),
                                             [&](const CauseFinding& f) { return f.cause == cause; });
-      const std::vector<int>& own = model_.causes()[static_cast<std::size_t>(cause)].parameters;
-      double variance = 0;
-      const double length =
-          Eigen::Map<const Eigen::VectorXd>(finding.values.data(), static_cast<Eigen::Index>(finding.values.size()))
-              .norm();
-      for (Eigen::Index f = 0; f < steps.cols(); ++f) {
-        double along = 0;
-        for (std::size_t i = 0; i < own.size(); ++i) {
-          const auto row = std::find(fit.free.begin(), fit.free.end(), own[i]) - fit.free.begin();
-          along += steps(row, f) * (own.size() == 1 ? 1 : finding.values[i] / std::max(length, 1e-12));
-        }
-        variance += along * along * (fold_count - 1.0) / fold_count;
-      }
+      const double variance =
+          beyond_noise(jackknife_deviation(model_, fit, steps, cause, finding.values), finding.noise_deviation);
       const double half = 0.5 * (finding.high - finding.low);
-      const double wider = std::sqrt(half * half + 1.96 * 1.96 * variance);
+      const double wider = std::sqrt(half * half + normal_quantile * normal_quantile * variance);
       finding.low = finding.strength - wider;
       finding.high = finding.strength + wider;
     }
@@ -255,9 +245,13 @@ class Diagnostician {
     }
   }
   double half_width_with_model(const CauseFinding& finding) const {
-    const double misfit = std::isfinite(finding.min_visible_strength) ? 0.5 * finding.min_visible_strength : 0;
-    const double gain = 1.96 * model_.causes()[static_cast<std::size_t>(finding.cause)].gain_error * finding.strength;
-    return std::sqrt(std::pow(0.5 * (finding.high - finding.low), 2) + misfit * misfit + gain * gain);
+    // What is just visible is four standard deviations.
+    const double misfit = std::isfinite(finding.min_visible_strength)
+                              ? 4 * beyond_noise(0.25 * finding.min_visible_strength, finding.noise_deviation)
+                              : 0;
+    const double gain =
+        normal_quantile * model_.causes()[static_cast<std::size_t>(finding.cause)].gain_error * finding.strength;
+    return std::sqrt(std::pow(0.5 * (finding.high - finding.low), 2) + misfit + gain * gain);
   }
 
   const CauseFinding& finding_of(int cause) const {
@@ -297,32 +291,12 @@ class Diagnostician {
         continue;
       }
       finding.fitted = true;
-      const Explanations::Refit& r = tried_.refit_of(at->causes);
-      const StructuredObjective objective(model_, tried_.misfit(), tried_.nearest_size(at->structure),
-                                          tried_.discrepancies(), tried_.discrepancy_sensitivities());
-      Eigen::VectorXd g;
-      Eigen::MatrixXd H;
-      objective.quadratic(residuals(model_, r.fit.predictions), r.fit.sensitivities, r.fit.free, r.fit.u, g, H);
-      const Eigen::MatrixXd covariance = H.llt().solve(Eigen::MatrixXd::Identity(H.rows(), H.cols()));
-      const std::vector<int>& own = model_.causes()[static_cast<std::size_t>(cause)].parameters;
-      Eigen::VectorXd value(static_cast<Eigen::Index>(own.size())), slope(value.size());
-      Eigen::MatrixXd spread(value.size(), value.size());
-      std::vector<Eigen::Index> at_index;
-      for (const int p : own)
-        at_index.push_back(std::find(r.fit.free.begin(), r.fit.free.end(), p) - r.fit.free.begin());
-      for (Eigen::Index i = 0; i < value.size(); ++i) {
-        const ModelParameter& parameter =
-            model_.parameters()[static_cast<std::size_t>(own[static_cast<std::size_t>(i)])];
-        value[i] = parameter.value(r.fit.u[own[static_cast<std::size_t>(i)]]);
-        finding.values.push_back(value[i]);
-        for (Eigen::Index j = 0; j < value.size(); ++j)
-          spread(i, j) = covariance(at_index[static_cast<std::size_t>(i)], at_index[static_cast<std::size_t>(j)]);
-      }
-      finding.strength = value.size() == 1 ? value[0] : value.norm();
-      slope = value.norm() > 0 ? Eigen::VectorXd(value / value.norm()) : Eigen::VectorXd::Unit(value.size(), 0);
-      const double half = 1.96 * std::sqrt(std::max(0.0, slope.dot(spread * slope)));
-      finding.low = finding.strength - half;
-      finding.high = finding.strength + half;
+      const FittedStrength fitted = fitted_strength(model_, tried_, at->causes, cause, at->structure);
+      finding.values = fitted.values;
+      finding.strength = fitted.strength;
+      finding.noise_deviation = fitted.noise_deviation;
+      finding.low = finding.strength - normal_quantile * fitted.deviation;
+      finding.high = finding.strength + normal_quantile * fitted.deviation;
       result_.causes.push_back(finding);
     }
   }

@@ -24,6 +24,7 @@ struct CauseFinding {
   int cause = 0;
   double probability = 0;                  // that it is at work, by itself or in a pair, as the answers have it
   double strength = 0, low = 0, high = 0;  // Cause::unit; 95 % interval
+  double noise_deviation = 0;              // standard deviation of the strength by measuring noise alone
   bool fitted = false;                     // else the strength is a linear model's, and the interval has no width
   std::vector<double> values;              // of its parameters
   double min_visible_strength = 0;  // strength that these data would show; infinite where the calibration hides any

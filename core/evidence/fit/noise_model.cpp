@@ -67,9 +67,10 @@ NoiseEstimate estimate_noise(const Measurement& measurement, const Eigen::Matrix
       squares.push_back(normalised[i]);
     }
     scale = std::sqrt(std::max(1e-12, median(squares) / chi_square_median(static_cast<double>(d))));
-    constexpr double degrees = 4;
+    constexpr double degrees_of_student = 4;
     for (Eigen::Index i = 0; i < n; ++i)
-      trust[i] = std::min(1.0, (degrees + static_cast<double>(d)) / (degrees + normalised[i] / (scale * scale)));
+      trust[i] = std::min(
+          1.0, (degrees_of_student + static_cast<double>(d)) / (degrees_of_student + normalised[i] / (scale * scale)));
   }
   result.weights.resize(n);
   const double limit = std::pow(outlier_limit, 2) * static_cast<double>(d) * scale * scale / 2;

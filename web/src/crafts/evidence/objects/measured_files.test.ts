@@ -74,7 +74,11 @@ describe('what is dropped on the evidence room', () => {
   });
 
   it('packs the same files into the same bytes', () => {
-    const files = { 'mould.obj': bytes('v'), 'setup.json': bytes('{}'), 'measured.csv': bytes('x_mm\n1\n2\n') };
+    const files = {
+      'mould.obj': bytes('v'),
+      'setup.json': bytes('{}'),
+      'measured.csv': bytes('x_mm\n1\n2\n'),
+    };
     const pack = packObject(files);
     expect(pack).toEqual(packObject({ ...files }));
     expect(names(unzipSync(pack))).toEqual([...three].sort());

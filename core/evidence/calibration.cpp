@@ -151,13 +151,11 @@ Calibration calibrate(SimulationBag& bag, Context& context) {
   const ForwardModel& model = bag.model();
   Calibration result;
   at_nominal(bag, result, context);
-  double soft = 0;
-  for (const NoiseEstimate& noise : result.noise) soft = std::max(soft, noise.sigma);
   ParameterFit fit;
   {
     const auto span = context.span(0.05, 0.6, "Fitting");
-    fit = fit_parameters(bag, *mean_distance_objective(model, soft), model.base_parameters(), model.nominal(), {}, {},
-                         context, "Fitting");
+    fit = fit_parameters(bag, *mean_distance_objective(model, largest_noise(model, result.noise)),
+                         model.base_parameters(), model.nominal(), {}, {}, context, "Fitting");
   }
   result.u = fit.u;
   result.predictions = fit.predictions;

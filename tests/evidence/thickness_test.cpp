@@ -3,6 +3,7 @@
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/matchers/catch_matchers_floating_point.hpp>
 
+#include <atomic>
 #include <cmath>
 #include <random>
 
@@ -56,14 +57,15 @@ class TwoGauges : public ForwardModel {
     const Measurement& own = measurements_[static_cast<std::size_t>(m)];
     // Whoever answers for what lies beside has answered for the place just before, on the same thread.
     static thread_local const double* last = nullptr;
-    if (!own.is_place()) CHECK(last == u.data());
+    if (!own.is_place() && last != u.data()) ++misplaced;
     last = u.data();
     return Eigen::MatrixXd::Constant(own.place.rows(), 1, own.scale * u[0]);
   }
   bool claim(int m, const Eigen::VectorXd&, const Context&) const override {
-    CHECK(m == 0);
+    if (m != 0) ++misplaced;
     return true;
   }
+  mutable std::atomic<int> misplaced = 0;  // questions about what lies beside that no place was asked before
 
  private:
   std::vector<ModelParameter> parameters_;
@@ -79,6 +81,7 @@ TEST_CASE("Thickness.OneSimulationAnswersForAllThatIsMeasuredOfAnObject") {
   for (int i = 0; i < 40; ++i) points.push_back(Eigen::VectorXd::Constant(1, 0.1 * i));
   const auto predictions = bag.run(points, context, "");
   CHECK(bag.simulations() == 40);
+  CHECK(model.misplaced == 0);
   for (int i = 0; i < 40; ++i) {
     REQUIRE(predictions[static_cast<std::size_t>(i)]);
     REQUIRE(predictions[static_cast<std::size_t>(i)]->size() == 2);
@@ -105,6 +108,14 @@ TEST_CASE("Thickness.TellsAsMuchAsItsPrecision") {
                WithinRel(0.5 * std::log(1 + 4 * precision), 1e-9));
     CHECK_THAT(plan.information_of_all, WithinRel(0.5 * std::log(1 + 4 * precision), 1e-9));
   }
+}
+
+TEST_CASE("Thickness.DoesNotSetTheDistanceThatIsRoundedOff") {
+  const TwoGauges model(9, 0.3, 4, 0.5);
+  std::vector<NoiseEstimate> noise(2);
+  noise[0].sigma = 0.3;
+  noise[1].sigma = 5;
+  CHECK(largest_noise(model, noise) == 0.3);
 }
 
 TEST_CASE("Thickness.IsEvidenceButNoDistance") {

@@ -155,6 +155,39 @@ class Evidence(unittest.TestCase):
         self.assertLess(distances["extended"], 0.5 * distances["calibrated"])
         self.assertFalse(any(math.isnan(v) for v in diagnosis["error_before_interval_mm"]))
 
+    def test_a_rim_that_is_thicker_on_one_side_names_the_wedge(self):
+        wedge = 0.25
+        formed = self.simulated(self.folder / "first", *self.stiffer, "--thickness-wedge-x", wedge)
+        draw = random.Random(5)
+        points = [(x, y, *(v + draw.gauss(0, 0.04) for v in p)) for (x, y), p in zip(PLACES, formed)]
+        wedged = self.write(self.folder / "wedged", points)
+        half = [0.25 * (sheet + opening) for sheet, opening in zip(SETUP["sheet_mm"], SETUP["clamp_opening_mm"])]
+        rim = [(-half[0], 0), (half[0], 0), (0, -half[1]), (0, half[1])]
+        thickness = [SETUP["sheet_thickness_mm"] * (1 + wedge * 2 * x / SETUP["clamp_opening_mm"][0]) + draw.gauss(0, 0.02) for x, _ in rim]
+        lines = (wedged / "measured.csv").read_text().splitlines()
+        lines = [lines[0] + ",thickness_mm,thickness_sigma_mm"] + [line + ",," for line in lines[1:]]
+        lines += [f"{x:g},{y:g},,,,,{t:.3f},0.02" for (x, y), t in zip(rim, thickness)]
+        (wedged / "measured.csv").write_text("\n".join(lines) + "\n")
+        out = self.folder / "wedged-report"
+        self.run_program("evidence-diagnose", "--object", wedged, "--triangles", 500, "--pairs", "off", "--separate", "off", "--out", out)
+        diagnosis = json.loads((out / "diagnosis.json").read_text())
+        self.assertEqual(diagnosis["verdict"], ["thickness_wedge"])
+        self.assertAlmostEqual(diagnosis["causes"][0]["values"]["thickness_wedge_x"], wedge, delta=0.06)
+        self.assertEqual(diagnosis["beside"][0]["object"], "wedged, thickness of the rim")
+        self.assertLess(diagnosis["beside"][0]["error_after_mm"], 0.5 * diagnosis["beside"][0]["error_before_mm"])
+        rows = [dict(zip((out / "thickness.csv").read_text().splitlines()[0].split(","), line.split(",")))
+                for line in (out / "thickness.csv").read_text().splitlines()[1:]]
+        self.assertEqual(len(rows), 4)
+        for row, measured in zip(rows, thickness):
+            self.assertAlmostEqual(float(row["thickness_mm"]), measured, delta=0.001)
+            self.assertAlmostEqual(float(row["calibrated_mm"]), SETUP["sheet_thickness_mm"], delta=0.001)
+            self.assertAlmostEqual(float(row["extended_mm"]), measured, delta=0.08)
+        self.assertEqual(len((out / "residuals.csv").read_text().splitlines()), len(PLACES) + 1)
+        self.assertIn("wedged, thickness of the rim", (out / "diagnosis.html").read_text())
+        lines[-1] = lines[-1].replace(f"{thickness[-1]:.3f}", "950")
+        (wedged / "measured.csv").write_text("\n".join(lines) + "\n")
+        self.expect_refused("give it in millimetres", "evidence-diagnose", "--object", wedged, "--out", self.folder / "refused")
+
     def test_what_is_wrong_with_data_is_said(self):
         calibrate = ("evidence-calibrate", "--out", self.folder / "refused", "--object")
         self.expect_refused("metres", *calibrate, self.write(self.folder / "metres", [(p[0], p[1], *(v / 1000 for v in p[2:])) for p in self.points]))

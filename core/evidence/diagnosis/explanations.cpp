@@ -281,11 +281,7 @@ double Explanations::structure_left(const std::vector<int>& causes) const {
   return structure / weight;
 }
 
-double Explanations::softness() const {
-  double soft = 0;
-  for (const NoiseEstimate& noise : noise_) soft = std::max(soft, noise.sigma);
-  return soft;
-}
+double Explanations::softness() const { return largest_noise(model_, noise_); }
 
 double Explanations::movement(int cause, const Eigen::VectorXd& u) const {
   double squares = 0, count = 0;

@@ -46,9 +46,11 @@ Separation best_separation(SimulationBag& bag, const Diagnosis& diagnosis, const
                                    "Looking for a measurement that distinguishes them");
     SimulationBag own(*proposals[i].model);
     std::vector<Precisions> expected;
-    for (const Measurement& m : proposals[i].model->measurements())
-      expected.push_back(
-          isotropic(Eigen::VectorXd::Constant(m.measured.rows(), 1 / (sigma * sigma)), m.measured.cols()));
+    for (const Measurement& m : proposals[i].model->measurements()) {
+      // Other quantities than places would be measured as well as they were.
+      const Eigen::VectorXd deviations = m.is_place() ? Eigen::VectorXd::Constant(m.measured.rows(), sigma) : m.sigma;
+      expected.push_back(isotropic(deviations.array().square().inverse().matrix(), m.measured.cols()));
+    }
     auto together = gram_of(own, expected);
     if (!together) continue;
     *together += *present;

@@ -22,6 +22,13 @@ constexpr double outlier_limit = 5;  // standard deviations, of the residual's l
 
 }  // namespace
 
+double largest_noise(const ForwardModel& model, const std::vector<NoiseEstimate>& noise) {
+  double largest = 0;
+  for (std::size_t m = 0; m < noise.size(); ++m)
+    if (model.measurements()[m].is_place()) largest = std::max(largest, noise[m].sigma);
+  return largest;
+}
+
 NoiseEstimate estimate_noise(const Measurement& measurement, const Eigen::MatrixXd& residual) {
   const Eigen::Index n = residual.rows(), d = residual.cols();
   NoiseEstimate result;

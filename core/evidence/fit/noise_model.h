@@ -17,6 +17,9 @@ struct NoiseEstimate {
   int outliers = 0;
 };
 
+/// Of the measurements of places, the largest NoiseEstimate::sigma: distances below it are rounded off.
+double largest_noise(const ForwardModel& model, const std::vector<NoiseEstimate>& noise);
+
 /// With fewer points, nothing but the stated standard deviations says how large the noise is: what is left of ten
 /// points can be smooth as well.
 inline constexpr int min_points_to_find_noise = 30;

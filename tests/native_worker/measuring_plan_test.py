@@ -29,7 +29,10 @@ class MeasuringPlan(unittest.TestCase):
         cls.folder = pathlib.Path(cls.temporary.name)
         cls.plan = cls.folder / "plan"
         cls.report = cls.planned(cls.plan, "--mark-count", MARKS)
-        cls.marks = rows_of(cls.plan / "measured.csv")
+        rows = rows_of(cls.plan / "measured.csv")
+        cls.marks = [row for row in rows if row["number"].isdigit()]
+        cls.rim = [row for row in rows if row["number"].startswith("rim ")]
+        assert len(cls.marks) + len(cls.rim) == len(rows)
 
     @classmethod
     def tearDownClass(cls):
@@ -59,6 +62,8 @@ class MeasuringPlan(unittest.TestCase):
             for i, mark in enumerate(self.marks):
                 done = i >= left_out
                 writer.writerow({**mark, **{a: mark[f"expected_{a}"] if done else "" for a in ("x_mm", "y_mm", "z_mm")}})
+            for place in self.rim:
+                writer.writerow({**place, "thickness_mm": "1"})
         return folder
 
     def test_marks_lie_on_the_grid_and_apart(self):
@@ -71,6 +76,19 @@ class MeasuringPlan(unittest.TestCase):
         self.assertEqual(len(self.report["marks"]), MARKS)
         self.assertLess(self.report["information_nats"], self.report["information_of_all_nats"])
         self.assertEqual(self.report["information_of_measured_nats"], 0)
+
+    def test_the_rim_shows_a_sheet_that_is_thicker_on_one_side(self):
+        places = {row["number"]: (float(row["sheet_x_mm"]), float(row["sheet_y_mm"])) for row in self.rim}
+        self.assertEqual(places, {"rim left": (-60, 0), "rim right": (60, 0), "rim front": (0, -60), "rim back": (0, 60)})
+        self.assertEqual([(r["side"], r["expected_mm"]) for r in self.report["rim"]],
+                         [("left", 1), ("right", 1), ("front", 1), ("back", 1)])
+        without = self.planned(self.folder / "without rim", "--mark-count", MARKS, "--rim-thickness", "off")
+        self.assertEqual(without["rim"], [])
+        visible = [next(c["min_visible_strength"] for c in r["causes"] if c["name"] == "thickness_wedge") for r in (self.report, without)]
+        self.assertLess(visible[0], 0.7 * visible[1])
+        self.assertGreater(self.report["information_nats"], without["information_nats"])
+        self.assertNotIn("the rim's thickness", without["sentence"])
+        self.assertIn("the rim's thickness", self.report["sentence"])
 
     def test_strong_causes_show_sooner_with_all_marks(self):
         causes = self.report["causes"]
@@ -113,7 +131,8 @@ class MeasuringPlan(unittest.TestCase):
         self.assertEqual(further["measured"], MARKS)
         self.assertAlmostEqual(further["information_of_measured_nats"] / self.report["information_nats"], 1, delta=0.05)
         self.assertGreater(further["information_nats"], further["information_of_measured_nats"])
-        rows = rows_of(self.folder / "further" / "measured.csv")
+        self.assertEqual(further["rim"], [])  # it is measured
+        rows = [row for row in rows_of(self.folder / "further" / "measured.csv") if row["thickness_mm"] == ""]
         self.assertEqual([row["number"] for row in rows], [str(i + 1) for i in range(MARKS + 3)])
         places = {(row["sheet_x_mm"], row["sheet_y_mm"]) for row in rows}
         self.assertEqual(len(places), MARKS + 3)

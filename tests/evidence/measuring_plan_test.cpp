@@ -11,6 +11,7 @@
 
 #include "evidence/planning/marks_drawing.h"
 #include "evidence/planning/point_information.h"
+#include "evidence/one_cause.h"
 #include "evidence/toy_model.h"
 
 namespace formwright {
@@ -18,6 +19,7 @@ namespace {
 
 using Catch::Matchers::WithinAbs;
 using Catch::Matchers::WithinRel;
+using evidence_test::OneCause;
 using evidence_test::ToyModel;
 
 std::vector<int> all_parameters(const ForwardModel& model) {
@@ -61,38 +63,6 @@ TEST_CASE("PointInformation.IsThatOfTheWholeSetInAnyOrder") {
     CHECK_THAT(backward.total(), WithinRel(forward.total(), 1e-9));
   }
 }
-
-/// y = u + noise, measured at one place of which nothing else is known.
-class OneCause : public ForwardModel {
- public:
-  explicit OneCause(int points) {
-    ModelParameter p;
-    p.name = "shift";
-    p.role = ParameterRole::effect;
-    p.low = -10;
-    p.high = 10;
-    p.prior_sd = 2;
-    parameters_ = {p};
-    causes_ = {{"shift", "Shift", "", "", {0}, "mm"}};
-    Measurement m;
-    m.place = Eigen::MatrixX2d::Constant(points, 2, 0.5);
-    m.measured.setZero(points, 1);
-    m.sigma.setConstant(points, 0.1);
-    measurements_ = {m};
-  }
-  const std::vector<ModelParameter>& parameters() const override { return parameters_; }
-  const std::vector<Cause>& causes() const override { return causes_; }
-  const std::vector<Measurement>& measurements() const override { return measurements_; }
-  double known_misfit() const override { return 0; }
-  Eigen::MatrixXd predict(int, const Eigen::VectorXd& u, const Context&) const override {
-    return Eigen::MatrixXd::Constant(measurements_.front().place.rows(), 1, u[0]);
-  }
-
- private:
-  std::vector<ModelParameter> parameters_;
-  std::vector<Cause> causes_;
-  std::vector<Measurement> measurements_;
-};
 
 TEST_CASE("PointInformation.OfRepeatedMeasurementsInClosedForm") {
   // log(1 + n prior^2 / sigma^2) / 2: from n = 1 on it grows by log(n) / 2, so twice the points add log(2) / 2.

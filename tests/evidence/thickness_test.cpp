@@ -15,6 +15,7 @@
 #include "evidence/models/thermoform/thermoform_model.h"
 #include "evidence/planning/measuring_plan.h"
 #include "evidence/planning/point_information.h"
+#include "evidence/one_cause.h"
 #include "evidence/toy_with_thickness.h"
 #include "evidence/virtual_lab.h"
 
@@ -26,36 +27,18 @@ using Catch::Matchers::WithinRel;
 using evidence_test::ToyModel;
 using evidence_test::ToyWithThickness;
 
-/// u, measured n times by one gauge and k times, tenfold, by another that lies beside it.
-class TwoGauges : public ForwardModel {
+/// The same cause, measured n times by one gauge and k times, tenfold, by another gauge.
+class TwoGauges : public evidence_test::OneCause {
  public:
-  TwoGauges(int n, double sigma, int k, double other_sigma) {
-    ModelParameter p;
-    p.name = "shift";
-    p.role = ParameterRole::effect;
-    p.low = -10;
-    p.high = 10;
-    p.prior_sd = 2;
-    parameters_ = {p};
-    causes_ = {{"shift", "Shift", "", "", {0}, "mm"}};
-    Measurement m;
-    m.place = Eigen::MatrixX2d::Constant(n, 2, 0.5);
-    m.measured.setZero(n, 1);
-    m.sigma.setConstant(n, sigma);
-    measurements_ = {m, m};
-    measurements_[1].place = Eigen::MatrixX2d::Constant(k, 2, 0.5);
-    measurements_[1].measured.setZero(k, 1);
-    measurements_[1].scale = 10;
-    measurements_[1].sigma.setConstant(k, 10 * other_sigma);
-    measurements_[1].beside = 0;
+  TwoGauges(int n, double sigma, int k, double other_sigma) : OneCause(n, sigma) {
+    Measurement m = OneCause(k, 10 * other_sigma).measurements().front();
+    m.scale = 10;
+    m.places_index = 0;
+    measurements_.push_back(m);
   }
-  const std::vector<ModelParameter>& parameters() const override { return parameters_; }
-  const std::vector<Cause>& causes() const override { return causes_; }
-  const std::vector<Measurement>& measurements() const override { return measurements_; }
-  double known_misfit() const override { return 0; }
   Eigen::MatrixXd predict(int m, const Eigen::VectorXd& u, const Context&) const override {
     const Measurement& own = measurements_[static_cast<std::size_t>(m)];
-    // Whoever answers for what lies beside has answered for the place just before, on the same thread.
+    // The other quantity is asked for right after the place, on the same thread.
     static thread_local const double* last = nullptr;
     if (!own.is_place() && last != u.data()) ++misplaced;
     last = u.data();
@@ -65,12 +48,8 @@ class TwoGauges : public ForwardModel {
     if (m != 0) ++misplaced;
     return true;
   }
-  mutable std::atomic<int> misplaced = 0;  // questions about what lies beside that no place was asked before
-
- private:
-  std::vector<ModelParameter> parameters_;
-  std::vector<Cause> causes_;
-  std::vector<Measurement> measurements_;
+  mutable std::atomic<int> misplaced =
+      0;  // questions about the other quantity that were not asked right after the place
 };
 
 TEST_CASE("Thickness.OneSimulationAnswersForAllThatIsMeasuredOfAnObject") {
@@ -103,7 +82,7 @@ TEST_CASE("Thickness.TellsAsMuchAsItsPrecision") {
     REQUIRE(plan.causes.size() == 1);
     CHECK_THAT(plan.causes.front().min_visible_strength, WithinRel(4 / std::sqrt(precision), 1e-9));
     CHECK_THAT(plan.information_of_measured, WithinRel(0.5 * std::log(1 + 4 * 9 / (0.3 * 0.3)), 1e-9));
-    options.measured_beside = k;
+    options.measured_others = k;
     CHECK_THAT(plan_measuring(bag, options, context).information_of_measured,
                WithinRel(0.5 * std::log(1 + 4 * precision), 1e-9));
     CHECK_THAT(plan.information_of_all, WithinRel(0.5 * std::log(1 + 4 * precision), 1e-9));
@@ -128,11 +107,11 @@ TEST_CASE("Thickness.IsEvidenceButNoDistance") {
   const Diagnosis d = diagnose(bag, {}, context);
   REQUIRE(d.reading == Reading::cause);
   CHECK(d.verdict == std::vector<int>{2});
-  REQUIRE(d.held_out_beside.size() == 1);
+  REQUIRE(d.held_out_others.size() == 1);
   // In its own unit: noise of 0.01 whose mean length is sqrt(2 / pi) times as much.
-  CHECK(d.held_out_beside[0].after.mean < 0.012);
-  CHECK(d.held_out_beside[0].after.mean > 0.005);
-  CHECK(d.held_out_beside[0].before.mean > 2 * d.held_out_beside[0].after.mean);
+  CHECK(d.held_out_others[0].after.mean < 0.012);
+  CHECK(d.held_out_others[0].after.mean > 0.005);
+  CHECK(d.held_out_others[0].before.mean > 2 * d.held_out_others[0].after.mean);
   CHECK_THAT(d.noise[1].sigma / 4, WithinRel(0.01, 0.3));
   // Distances are those of places alone: the same as where nothing else was measured.
   ToyModel alone(300);
@@ -142,8 +121,8 @@ TEST_CASE("Thickness.IsEvidenceButNoDistance") {
   CHECK_THAT(d.noise_floor, WithinRel(other.noise_floor, 0.02));
   CHECK_THAT(d.held_out.after.mean, WithinRel(other.held_out.after.mean, 0.05));
   const Json json = diagnosis_json({model, d, {}, std::nullopt, {}, {}});
-  CHECK(json["beside"][0]["object"] == "toy, thickness");
-  CHECK(json["beside"][0]["readings"] == 40);
+  CHECK(json["other_quantities"][0]["object"] == "toy, thickness");
+  CHECK(json["other_quantities"][0]["readings"] == 40);
   const std::string page = diagnosis_page({model, d, {}, std::nullopt, {}, {}});
   CHECK(page.find("<h2>toy, thickness</h2>") != std::string::npos);
   CHECK(page.find("Diagnosis of toy</title>") != std::string::npos);
@@ -179,7 +158,7 @@ TEST_CASE("Thickness.ASheetThatIsThickerOnOneSideShowsAtItsRim") {
     object.setup.sheet_turned = turned;
     const ThermoformModel model({object}, options);
     REQUIRE(model.measurements().size() == 2);
-    CHECK(model.measurements()[1].beside == 0);
+    CHECK(model.measurements()[1].places_index == 0);
     CHECK(model.measurements()[1].name == object.name + ", thickness of the rim");
     Eigen::VectorXd u = model.nominal();
     for (std::size_t p = 0; p < model.parameters().size(); ++p)

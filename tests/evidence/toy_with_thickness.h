@@ -12,7 +12,7 @@ class ToyWithThickness : public ToyModel {
   ToyWithThickness(int points, int readings, unsigned seed = 1) : ToyModel(points, seed) {
     Measurement m = ToyModel::measurements().front();
     m.name = "toy, thickness";
-    m.beside = 0;
+    m.places_index = 0;
     m.scale = 4;
     m.place.conservativeResize(readings, 2);
     m.measured.setZero(readings, 1);

@@ -132,7 +132,9 @@ void add_other_seeds() {
   save("json", "all", R"({"a":[1,-2.5e3,true,null,"\u00e4\ud83d\ude00"],"b":{"c":{}}})");
   save("json", "deep", std::string(70, '[') + std::string(70, ']'));
   save("craft_file", "setup", std::string("\0", 1) + R"({"sheet_mm":[240,260],"thickness_mm":1,"material":"PETG"})");
-  save("craft_file", "points", "\x01x_mm,y_mm,z_mm\n1,2,3\n4,5,6\n");
+  save("craft_file", "points", "\x01sheet_x_mm,sheet_y_mm,x_mm,y_mm,z_mm,sigma_mm\n1,2,3,4,5,0.1\n4,5,6,7,8,0\n");
+  save("craft_file", "thickness",
+       "\x01sheet_x_mm,sheet_y_mm,x_mm,y_mm,z_mm,thickness_mm,thickness_sigma_mm\n1,2,3,4,5,0.9,0.05\n-9,0,,,,1.1,0\n");
   save("craft_file", "profile",
        "\x02"
        R"({"format":"formwright-machine-profile","version":1,"name":"a","parameters":{}})");

@@ -173,8 +173,8 @@ class Evidence(unittest.TestCase):
         diagnosis = json.loads((out / "diagnosis.json").read_text())
         self.assertEqual(diagnosis["verdict"], ["thickness_wedge"])
         self.assertAlmostEqual(diagnosis["causes"][0]["values"]["thickness_wedge_x"], wedge, delta=0.06)
-        self.assertEqual(diagnosis["beside"][0]["object"], "wedged, thickness of the rim")
-        self.assertLess(diagnosis["beside"][0]["error_after_mm"], 0.5 * diagnosis["beside"][0]["error_before_mm"])
+        self.assertEqual(diagnosis["other_quantities"][0]["object"], "wedged, thickness of the rim")
+        self.assertLess(diagnosis["other_quantities"][0]["error_after_mm"], 0.5 * diagnosis["other_quantities"][0]["error_before_mm"])
         rows = [dict(zip((out / "thickness.csv").read_text().splitlines()[0].split(","), line.split(",")))
                 for line in (out / "thickness.csv").read_text().splitlines()[1:]]
         self.assertEqual(len(rows), 4)

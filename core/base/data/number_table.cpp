@@ -30,8 +30,8 @@ std::vector<std::string_view> fields_of(std::string_view line) {
 }  // namespace
 
 std::vector<std::vector<double>> read_number_table(ByteView csv, const std::string& file_name, const std::string& where,
-                                                   const std::vector<ColumnRule>& columns, std::size_t max_rows,
-                                                   std::size_t min_rows) {
+                                                   const std::vector<ColumnRule>& columns, bool may_be_empty,
+                                                   std::size_t max_rows) {
   std::string_view text = as_text(csv);
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
   std::vector<int> place(columns.size(), -1);
@@ -77,10 +77,9 @@ std::vector<std::vector<double>> read_number_table(ByteView csv, const std::stri
     rows.push_back(std::move(row));
     if (rows.size() > max_rows) refuse("more than " + std::to_string(max_rows) + " rows: keep every tenth.");
   }
-  if (rows.size() < min_rows)
+  if (rows.empty() && !may_be_empty)
     throw Error(ErrorCode::invalid_input, where,
-                file_name + " has " + (rows.empty() ? "no" : "only " + std::to_string(rows.size())) +
-                    " rows: it needs a header and one line for each measured point.");
+                file_name + " has no rows: it needs a header and one line for each measured point.");
   return rows;
 }
 

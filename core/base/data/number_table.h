@@ -8,8 +8,6 @@
 
 namespace formwright {
 
-inline constexpr std::size_t max_table_rows = 5'000'000;
-
 struct ColumnRule {
   std::string name;
   bool required = true;       // else 0 where the file has no such column
@@ -18,9 +16,9 @@ struct ColumnRule {
 
 /// Rows of the named columns, in the order of `columns`; others are passed over. Commas, any line ends, blanks around
 /// fields, a byte order mark are fine. Throws Error{invalid_input, where}, naming `file_name` and the line: a missing
-/// column, something that is no finite number, fewer than `min_rows` or more than `max_rows` rows.
+/// column, something that is no finite number, more than `max_rows` rows, or none unless `may_be_empty`.
 std::vector<std::vector<double>> read_number_table(ByteView csv, const std::string& file_name, const std::string& where,
-                                                   const std::vector<ColumnRule>& columns,
-                                                   std::size_t max_rows = max_table_rows, std::size_t min_rows = 1);
+                                                   const std::vector<ColumnRule>& columns, bool may_be_empty = false,
+                                                   std::size_t max_rows = 5'000'000);
 
 }  // namespace formwright

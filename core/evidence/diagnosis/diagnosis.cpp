@@ -69,10 +69,10 @@ class Diagnostician {
     widen_by_model();
     const auto before = held_out(result_.base).errors;
     const auto after = result_.verdict.empty() ? before : held_out(result_.extended).errors;
-    result_.held_out = compare_errors(model_, before, after);
+    result_.held_out = compare_distances(model_, before, after);
     for (std::size_t m = 0; m < before.size(); ++m)
       if (!model_.measurements()[m].is_place())
-        result_.held_out_beside.push_back(compare_errors_of(model_, m, before, after));
+        result_.held_out_others.push_back(compare_errors_of(model_, m, before, after));
     result_.unexplained_after = tried_.structure_left(result_.verdict);
     result_.structure = tried_.nearest_size(result_.unexplained_after);
     measure_structure();
@@ -157,7 +157,7 @@ class Diagnostician {
   /// Held-out blocks, with these causes and `without` any; kept in the last trial.
   bool predicts_better(const std::vector<int>& causes, const std::vector<Eigen::VectorXd>& without) {
     const ParameterFit& fit = tried_.refit_of(causes).fit;
-    const HeldOutGain gain = compare_errors(model_, without, predicted(fit, causes), weights());
+    const HeldOutGain gain = compare_weighed_errors(model_, without, predicted(fit, causes), weights());
     result_.trials.back().gain = gain;
     return gain.gain_probability >= sure_gain && gain.gain_share >= min_gain;
   }

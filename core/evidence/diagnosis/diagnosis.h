@@ -63,7 +63,7 @@ struct Diagnosis {
   double unexplained_before = 0,
          unexplained_after = 0;  // size of the structure left by the base model and by the best explanation
   HeldOutGain held_out;
-  std::vector<HeldOutGain> held_out_beside;  // of each measurement that is not of places, in its own unit
+  std::vector<HeldOutGain> held_out_others;  // of each measurement that is not of places, in its own unit
   std::vector<HeldOutTrial> trials;          // in the order they were asked
   int simulations = 0;
   double seconds_calibration = 0, seconds = 0;

@@ -202,8 +202,8 @@ std::string failed_list(const DiagnosisReport& report) {
          rows + "</table></details>";
 }
 
-/// What was measured beside places, reading by reading, beside both simulations.
-std::string beside_tables(const DiagnosisReport& report) {
+/// Quantities other than places: each reading, and what both simulations have there.
+std::string other_quantity_tables(const DiagnosisReport& report) {
   constexpr Eigen::Index max_rows = 40;
   const Diagnosis& d = report.diagnosis;
   std::string html;
@@ -211,7 +211,7 @@ std::string beside_tables(const DiagnosisReport& report) {
   for (std::size_t i = 0; i < report.model.measurements().size(); ++i) {
     const Measurement& m = report.model.measurements()[i];
     if (m.is_place()) continue;
-    const HeldOutGain& gain = d.held_out_beside[number++];
+    const HeldOutGain& gain = d.held_out_others[number++];
     html += "<h2>" + xml_attribute(m.name) +
             "</h2><div class=\"panel scroll\"><p>Error on held-out data: " + figure(gain.before.mean) + "\u2009" +
             xml_attribute(report.unit) + " calibrated, " + figure(gain.after.mean) + "\u2009" +
@@ -305,7 +305,7 @@ std::string diagnosis_page(const DiagnosisReport& report) {
             "</div>";
   }
   html += "<div class=\"panel\">" + histogram(before, after, largest, d.noise_floor, unit) + "</div>";
-  html += beside_tables(report);
+  html += other_quantity_tables(report);
 
   html +=
       "<h2>Is there structure beyond noise?</h2><div class=\"panel scroll\"><table><tr><th>Object</th><th class=\"n\">Noise found</th><th class=\"n\">as stated</th><th class=\"n\">Outliers</th><th "

@@ -27,12 +27,12 @@ Json noise_json(const ForwardModel& model, const Diagnosis& d) {
   return list;
 }
 
-/// Errors, on held-out data, of what was measured beside places.
-Json beside_json(const ForwardModel& model, const Diagnosis& d) {
+/// Errors, on held-out data, of other quantities than places.
+Json other_quantities_json(const ForwardModel& model, const Diagnosis& d) {
   Json list = Json::array();
   for (const Measurement& m : model.measurements()) {
     if (m.is_place()) continue;
-    const HeldOutGain& gain = d.held_out_beside[list.size()];
+    const HeldOutGain& gain = d.held_out_others[list.size()];
     list.push_back({{"object", m.name},
                     {"readings", m.measured.rows()},
                     {"error_before_mm", gain.before.mean},
@@ -175,7 +175,7 @@ Json diagnosis_json(const DiagnosisReport& report) {
                       {"error_after_interval_mm", interval(report.unseen->after.low, report.unseen->after.high)},
                       {"gain_share", report.unseen->gain_share},
                       {"gain_interval", interval(report.unseen->gain_low, report.unseen->gain_high)}};
-  if (!d.held_out_beside.empty()) json["beside"] = beside_json(model, d);
+  if (!d.held_out_others.empty()) json["other_quantities"] = other_quantities_json(model, d);
   json["noise_floor_mm"] = d.noise_floor;
   json["noise"] = noise_json(model, d);
   json["unexplained_before_mm"] = d.unexplained_before;

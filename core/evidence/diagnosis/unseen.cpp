@@ -41,8 +41,8 @@ UnseenObjects predict_unseen(const ForwardModel& unseen, const ForwardModel& fro
   const Predictions after = residuals(model, result.extended);
   for (std::size_t object = 0; object < after.size(); ++object)
     result.weights.push_back(estimate_noise(model.measurements()[object], after[object]).weights);
-  result.gain = compare_errors(model, point_errors(residuals(model, result.base), result.weights),
-                               point_errors(after, result.weights));
+  result.gain = compare_distances(model, point_errors(residuals(model, result.base), result.weights),
+                                  point_errors(after, result.weights));
   return result;
 }
 

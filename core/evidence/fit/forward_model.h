@@ -53,13 +53,15 @@ struct Measurement {
   double extent_mm = 1;      // length that a unit of place stands for
   Eigen::MatrixXd measured;  // n x d
   Eigen::VectorXd sigma;     // n: standard deviation of each of the d numbers; all 0 where nothing is known
-  /// Of a quantity of another kind, measured on the object of an earlier measurement and predicted by the same
-  /// simulation: index of that one; -1 for places. It is evidence, but no distance: mean errors are without it.
-  int beside = -1;
-  double scale =
-      1;  // `measured` and `sigma` are as many times what was measured: known_misfit() then holds for it, too
+  /// -1 where places are measured. Else another quantity of the same object, predicted by the same simulation: index of
+  /// the measurement of that object's places, which comes before it. It is evidence, but no distance: reported mean
+  /// errors are without it.
+  int places_index = -1;
+  /// `measured` and `sigma` are as many times what was measured, so that ForwardModel::known_misfit() holds for this
+  /// quantity, too.
+  double scale = 1;
 
-  bool is_place() const { return beside < 0; }
+  bool is_place() const { return places_index < 0; }
 };
 
 class ForwardModel {

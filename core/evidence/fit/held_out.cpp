@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <numeric>
 
 #include "base/random.h"
 
@@ -25,21 +26,25 @@ std::vector<Eigen::VectorXd> point_errors(const Predictions& residuals, const st
   return errors;
 }
 
-HeldOutGain compare_errors(const ForwardModel& model, const std::vector<Eigen::VectorXd>& before,
-                           const std::vector<Eigen::VectorXd>& after, const std::vector<Eigen::VectorXd>& weights) {
+namespace {
+
+/// `measurements`: which are compared.
+HeldOutGain compare(const ForwardModel& model, const std::vector<std::size_t>& measurements,
+                    const std::vector<Eigen::VectorXd>& before, const std::vector<Eigen::VectorXd>& after,
+                    const std::vector<Eigen::VectorXd>& weights) {
   struct Block {
     double before = 0, after = 0, count = 0;
   };
   std::vector<Block> blocks;
-  for (std::size_t object = 0; object < before.size(); ++object) {
-    if (weights.empty() && !model.measurements()[object].is_place()) continue;
+  for (const std::size_t m : measurements) {
+    const double scale = weights.empty() ? model.measurements()[m].scale : 1;
     std::array<Block, block_count> own{};
-    for (Eigen::Index i = 0; i < before[object].size(); ++i) {
-      if (before[object][i] < 0 || after[object][i] < 0) continue;
-      Block& block = own[static_cast<std::size_t>(block_of(model.measurements()[object], i))];
-      const double weight = weights.empty() ? 1 : std::sqrt(weights[object][i]);
-      block.before += weight * before[object][i];
-      block.after += weight * after[object][i];
+    for (Eigen::Index i = 0; i < before[m].size(); ++i) {
+      if (before[m][i] < 0 || after[m][i] < 0) continue;
+      Block& block = own[static_cast<std::size_t>(block_of(model.measurements()[m], i))];
+      const double weight = weights.empty() ? 1 : std::sqrt(weights[m][i]);
+      block.before += weight * before[m][i] / scale;
+      block.after += weight * after[m][i] / scale;
       block.count += weight;
     }
     for (const Block& block : own)
@@ -78,17 +83,27 @@ HeldOutGain compare_errors(const ForwardModel& model, const std::vector<Eigen::V
   return gain;
 }
 
+}  // namespace
+
+HeldOutGain compare_distances(const ForwardModel& model, const std::vector<Eigen::VectorXd>& before,
+                              const std::vector<Eigen::VectorXd>& after) {
+  std::vector<std::size_t> places;
+  for (std::size_t m = 0; m < before.size(); ++m)
+    if (model.measurements()[m].is_place()) places.push_back(m);
+  return compare(model, places, before, after, {});
+}
+
 HeldOutGain compare_errors_of(const ForwardModel& model, std::size_t measurement,
                               const std::vector<Eigen::VectorXd>& before, const std::vector<Eigen::VectorXd>& after) {
-  std::vector<Eigen::VectorXd> own_before(before.size()), own_after(before.size()), alike(before.size());
-  const double scale = model.measurements()[measurement].scale;
-  const auto in_its_unit = [&](const Eigen::VectorXd& errors) {
-    return Eigen::VectorXd((errors.array() < 0).select(-1.0, errors / scale));
-  };
-  own_before[measurement] = in_its_unit(before[measurement]);
-  own_after[measurement] = in_its_unit(after[measurement]);
-  alike[measurement] = Eigen::VectorXd::Ones(before[measurement].size());
-  return compare_errors(model, own_before, own_after, alike);
+  return compare(model, {measurement}, before, after, {});
+}
+
+HeldOutGain compare_weighed_errors(const ForwardModel& model, const std::vector<Eigen::VectorXd>& before,
+                                   const std::vector<Eigen::VectorXd>& after,
+                                   const std::vector<Eigen::VectorXd>& weights) {
+  std::vector<std::size_t> all(before.size());
+  std::iota(all.begin(), all.end(), 0);
+  return compare(model, all, before, after, weights);
 }
 
 namespace {

@@ -24,10 +24,16 @@ int fold_of(int block);
 /// Per-point errors |residual|; points of weight 0 are -1.
 std::vector<Eigen::VectorXd> point_errors(const Predictions& residuals, const std::vector<Eigen::VectorXd>& weights);
 
-/// With `weights` (inverse variances) points of all measurements count by how far they may be trusted, else those of
-/// places alike.
-HeldOutGain compare_errors(const ForwardModel& model, const std::vector<Eigen::VectorXd>& before,
-                           const std::vector<Eigen::VectorXd>& after, const std::vector<Eigen::VectorXd>& weights = {});
+/// Errors of places, in mm.
+HeldOutGain compare_distances(const ForwardModel& model, const std::vector<Eigen::VectorXd>& before,
+                              const std::vector<Eigen::VectorXd>& after);
+/// Errors of one measurement alone, in the unit it was measured in.
+HeldOutGain compare_errors_of(const ForwardModel& model, std::size_t measurement,
+                              const std::vector<Eigen::VectorXd>& before, const std::vector<Eigen::VectorXd>& after);
+/// Errors of all measurements, each counted by how far it may be trusted. `weights`: inverse variances.
+HeldOutGain compare_weighed_errors(const ForwardModel& model, const std::vector<Eigen::VectorXd>& before,
+                                   const std::vector<Eigen::VectorXd>& after,
+                                   const std::vector<Eigen::VectorXd>& weights);
 
 /// What an explanation as a whole (its parameters, discrepancy parameters, structure of the size
 /// sizes()[structure]) predicts of each fold from the others, linearised about the fit. Lengths of what is left, in
@@ -36,10 +42,6 @@ std::vector<Eigen::VectorXd> predictive_errors(const ForwardModel& model, const 
                                                const std::vector<Precisions>& precisions, std::size_t structure,
                                                const std::vector<int>& discrepancy_parameters,
                                                const std::vector<Sensitivities>& discrepancies);
-
-/// The same of one measurement alone, in the unit it was measured in.
-HeldOutGain compare_errors_of(const ForwardModel& model, std::size_t measurement,
-                              const std::vector<Eigen::VectorXd>& before, const std::vector<Eigen::VectorXd>& after);
 
 struct HeldOut {
   std::vector<Eigen::VectorXd>

@@ -12,13 +12,14 @@ namespace formwright {
 
 std::vector<std::optional<Predictions>> SimulationBag::run(const std::vector<Eigen::VectorXd>& points, Context& context,
                                                            const std::string& stage) {
-  // What lies beside a place is predicted right after it, by the same thread: its simulation is there then.
+  // Other quantities of an object are predicted right after its places, by the same thread: the simulation is there
+  // then.
   const std::vector<Measurement>& measurements = model_.measurements();
   std::vector<std::vector<std::size_t>> groups;
   std::vector<std::size_t> group_of;
   for (std::size_t m = 0; m < measurements.size(); ++m) {
     group_of.push_back(measurements[m].is_place() ? groups.size()
-                                                  : group_of[static_cast<std::size_t>(measurements[m].beside)]);
+                                                  : group_of[static_cast<std::size_t>(measurements[m].places_index)]);
     if (measurements[m].is_place()) groups.emplace_back();
     groups[group_of[m]].push_back(m);
   }

@@ -9,6 +9,7 @@ namespace formwright {
 namespace {
 
 constexpr int modes_per_side = 9;
+static_assert(modes_per_side * modes_per_side == structure_mode_count);
 constexpr double correlation_length = 0.12;  // of the object's side: about 25 mm of a sheet
 
 }  // namespace

@@ -29,8 +29,10 @@ Precisions isotropic(const Eigen::VectorXd& weights, Eigen::Index d);
 /// n: inverses of the mean variances over directions, 0 for points that are left out.
 Eigen::VectorXd mean_weights(const Precisions& precisions);
 
-/// n x 81: the fields Phi S^(1/2) at `place` (n x 2). With independent coefficients of size 1 they make a field of RMS
-/// about 1.
+inline constexpr Eigen::Index structure_mode_count = 81;
+
+/// n x structure_mode_count: the fields Phi S^(1/2) at `place` (n x 2). With independent coefficients of size 1 they
+/// make a field of RMS about 1.
 Eigen::MatrixXd structure_modes(const Eigen::MatrixX2d& place);
 
 class StructuredMisfit {

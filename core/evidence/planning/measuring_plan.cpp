@@ -30,7 +30,7 @@ struct Surroundings {
 
 /// Of the object that is planned for.
 bool is_counted(const ForwardModel& model, std::size_t measurement) {
-  return measurement == 0 || model.measurements()[measurement].beside == 0;
+  return measurement == 0 || model.measurements()[measurement].places_index == 0;
 }
 
 /// A material that a calibration may well end at.
@@ -81,7 +81,8 @@ Surroundings look_around(SimulationBag& bag, Context& context) {
   return around;
 }
 
-/// Of some rows of the first measurement, and of all that lies beside it: what a diagnosis would have to go by.
+/// Of some rows of the first measurement, and of all its object's other quantities: what a diagnosis would have to go
+/// by.
 class Outlook {
  public:
   Outlook(const ForwardModel& model, const Surroundings& around, const std::vector<Eigen::Index>& rows)
@@ -172,13 +173,13 @@ MeasuringPlan plan_measuring(SimulationBag& bag, const MeasuringPlanOptions& opt
     measure(i);
     rows.push_back(i);
   }
-  Eigen::Index beside = 0;
+  Eigen::Index others = 0;
   for (std::size_t k = 1; k < model.measurements().size(); ++k)
-    if (is_counted(model, k)) beside += model.measurements()[k].place.rows();
-  // Rows of what lies beside follow those of places.
-  for (Eigen::Index i = 0; i < options.measured_beside; ++i) measure(n + i);
+    if (is_counted(model, k)) others += model.measurements()[k].place.rows();
+  // Rows of other quantities follow those of places.
+  for (Eigen::Index i = 0; i < options.measured_others; ++i) measure(n + i);
   plan.information_of_measured = total();
-  for (Eigen::Index i = options.measured_beside; i < beside; ++i) measure(n + i);
+  for (Eigen::Index i = options.measured_others; i < others; ++i) measure(n + i);
   while (static_cast<int>(plan.chosen.size()) < options.points) {
     context.check_cancelled();
     std::vector<double> gains(static_cast<std::size_t>(n), 0);
@@ -203,7 +204,7 @@ MeasuringPlan plan_measuring(SimulationBag& bag, const MeasuringPlanOptions& opt
   std::iota(all.begin(), all.end(), 0);
   const Outlook with_all(model, around, all);
   plan.information_of_all = with_all.information();
-  if (beside > 0 || !rows.empty()) plan.causes = outlooks(model, Outlook(model, around, rows), with_all);
+  if (others > 0 || !rows.empty()) plan.causes = outlooks(model, Outlook(model, around, rows), with_all);
   return plan;
 }
 

@@ -10,7 +10,7 @@ namespace formwright {
 struct MeasuringPlanOptions {
   int points = 10;                   // to choose
   Eigen::Index measured = 0;         // rows from 0 on that are measured already
-  Eigen::Index measured_beside = 0;  // the same of what lies beside; the others are going to be
+  Eigen::Index measured_others = 0;  // rows of the object's other quantities that are measured; the rest is going to be
   double min_distance = 0;           // between chosen points, in the unit of Measurement::place
 };
 
@@ -29,15 +29,16 @@ struct CauseOutlook {
 struct MeasuringPlan {
   std::vector<Eigen::MatrixXd> expected;  // n x d of each measurement: what is expected without any cause
   std::vector<Eigen::Index> chosen;       // rows, the most telling first
-  std::vector<double>
-      information;  // nats about the causes, of measured points, of what lies beside, and of the first 1, 2, ... chosen
+  std::vector<double> information;     // nats about the causes, of measured points, of the other quantities, and of the
+                                       // first 1, 2, ... chosen
   double information_of_measured = 0;  // of what is measured already
   double information_of_all = 0;       // of all candidates together
   std::vector<CauseOutlook> causes;    // in the model's order
 };
 
 /// Chooses rows of the model's first measurement, one after the other, each the one that tells most about the causes
-/// beside those before it (PointInformation). What lies beside it (Measurement::beside) counts as measured.
+/// beside those before it (PointInformation). Other quantities of the same object (Measurement::places_index) count as
+/// measured.
 /// Sensitivities are taken about two materials, the set-up's and a stiffer one, and the mean of what they say counts:
 /// what contact and mesh make is different about each. `Measurement::sigma` says how well each point can be measured, >
 /// 0; `measured` itself is not looked at. Fewer are chosen where `min_distance` leaves no more. Throws

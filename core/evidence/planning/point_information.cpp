@@ -20,10 +20,10 @@ PointInformation::PointInformation(const ForwardModel& model, const std::vector<
   const auto count = static_cast<Eigen::Index>(model.parameters().size());
   for (std::size_t m = 0; m < model.measurements().size(); ++m) {
     const Measurement& own = model.measurements()[m];
-    if (m > 0 && own.beside != 0) continue;
+    if (m > 0 && own.places_index != 0) continue;
     used.push_back(m);
     columns += own.measured.size();
-    coefficients += own.measured.cols() * structure_modes(own.place.topRows(0)).cols();
+    coefficients += own.measured.cols() * structure_mode_count;
   }
   effects_.setZero(count + coefficients, columns);
   Eigen::VectorXd prior = Eigen::VectorXd::Ones(effects_.rows());
@@ -36,7 +36,7 @@ PointInformation::PointInformation(const ForwardModel& model, const std::vector<
   for (const std::size_t m : used) {
     const Measurement& own = model.measurements()[m];
     add(own, sensitivities[m], precisions[m], structure, first_of_structure);
-    first_of_structure += own.measured.cols() * structure_modes(own.place.topRows(0)).cols();
+    first_of_structure += own.measured.cols() * structure_mode_count;
   }
   covariances_ = prior.asDiagonal() * effects_;
   cause_covariance_ = Eigen::VectorXd(prior(causes_)).asDiagonal();

@@ -17,9 +17,9 @@ namespace formwright {
 /// prior covariance - log det of their posterior covariance) / 2, in nats.
 class PointInformation {
  public:
-  /// Of the first measurement of `model`, and of those that lie beside it. `sensitivities`: of all parameters, n x d
-  /// each, of each measurement. `precisions`: of the points, n x d^2; a row of zeros is a point that cannot be
-  /// measured. `structure`: tau, in the unit of the measurement. Rows are counted through all measurements.
+  /// Of the first measurement of `model`, and of the other quantities of its object. `sensitivities`: of all
+  /// parameters, n x d each, of each measurement. `precisions`: of the points, n x d^2; a row of zeros is a point that
+  /// cannot be measured. `structure`: tau, in the unit of the measurement. Rows are counted through all measurements.
   PointInformation(const ForwardModel& model, const std::vector<Sensitivities>& sensitivities,
                    const std::vector<Precisions>& precisions, double structure);
 

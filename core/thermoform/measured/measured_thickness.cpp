@@ -10,10 +10,9 @@
 namespace formwright {
 
 std::vector<MeasuredThickness> read_measured_thickness(ByteView csv, const std::string& file_name) {
-  const auto rows =
-      read_number_table(csv, file_name, "measured",
-                        {{"sheet_x_mm"}, {"sheet_y_mm"}, {"thickness_mm", false, true}, {"thickness_sigma_mm", false}},
-                        max_table_rows, 0);
+  const auto rows = read_number_table(
+      csv, file_name, "measured",
+      {{"sheet_x_mm"}, {"sheet_y_mm"}, {"thickness_mm", false, true}, {"thickness_sigma_mm", false}}, true);
   std::vector<MeasuredThickness> readings;
   for (const std::vector<double>& row : rows) {
     const auto refuse = [&](const char* sentence) {

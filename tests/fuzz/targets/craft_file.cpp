@@ -5,6 +5,7 @@
 #include "fuzz/fuzz_check.h"
 #include "thermoform/machine_profile.h"
 #include "thermoform/measured/measured_object.h"
+#include "thermoform/measured/measured_thickness.h"
 #include "zippable/design_files.h"
 #include "zippable/flat_design.h"
 
@@ -15,7 +16,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     switch (data[0] % 8) {
       case 0: read_object_setup(bytes); break;
-      case 1: read_measured_points(bytes); break;
+      case 1:
+        read_measured_thickness(bytes);
+        read_measured_points(bytes);
+        break;
       case 2: write_machine_profile(read_machine_profile(bytes)); break;
       case 3: read_segments(bytes); break;
       case 4: read_flat_design(bytes); break;

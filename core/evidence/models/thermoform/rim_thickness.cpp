@@ -7,6 +7,10 @@
 
 namespace formwright {
 
+bool is_on_rim(const Vec2& sheet_mm, const ThermoformOptions& o) {
+  return std::abs(sheet_mm.x()) > 0.5 * o.clamp_opening_x_mm || std::abs(sheet_mm.y()) > 0.5 * o.clamp_opening_y_mm;
+}
+
 std::vector<RimPlace> rim_places(const ThermoformOptions& o) {
   constexpr double min_rim_mm = 2;  // that calipers grip
   std::vector<RimPlace> places;

@@ -8,6 +8,9 @@
 
 namespace formwright {
 
+/// Held by the clamp: outside of its opening.
+bool is_on_rim(const Vec2& sheet_mm, const ThermoformOptions& options);
+
 struct RimPlace {
   std::string side;  // "left", "right", "front", "back"
   Vec2 sheet_mm;

@@ -7,6 +7,7 @@
 
 #include "base/sha256.h"
 #include "evidence/models/thermoform/cause_words.h"
+#include "evidence/models/thermoform/rim_thickness.h"
 #include "thermoform/sheet/sheet_mesh.h"
 
 namespace formwright {
@@ -18,8 +19,8 @@ constexpr std::size_t max_sheets = 200;  // kept at a time; about 0.2 MB each
 /// The simulation's own error of thickness, RMS, as a share of the sheet's: what a finer mesh or the other elastic law
 /// changes (docs/evidence.md, "Thickness").
 constexpr double known_thickness_misfit = 0.03;
-constexpr double known_rim_misfit =
-    0.01;  // the same of the rim, which is not simulated: what sheets vary by from place to place
+/// The same of the rim. It is not simulated: an assumption of how much sheets vary from place to place.
+constexpr double known_rim_misfit = 0.01;
 
 /// What later readers of a stored simulation must find unchanged; raised when the simulation computes something else.
 constexpr const char* simulation_version = "thermoform-2:";
@@ -100,10 +101,8 @@ ThermoformModel::ThermoformModel(std::vector<FormedObject> objects, ThermoformMo
   for (int object = 0; object < static_cast<int>(objects_.size()); ++object) {
     std::vector<MeasuredThickness> rim = objects_[static_cast<std::size_t>(object)].thickness;
     const auto own = read_parameters<ThermoformOptions>(objects_[static_cast<std::size_t>(object)].setup.parameters);
-    const auto within = std::stable_partition(rim.begin(), rim.end(), [&](const MeasuredThickness& reading) {
-      return std::abs(reading.sheet_mm.x()) > 0.5 * own.clamp_opening_x_mm ||
-             std::abs(reading.sheet_mm.y()) > 0.5 * own.clamp_opening_y_mm;
-    });
+    const auto within = std::stable_partition(
+        rim.begin(), rim.end(), [&](const MeasuredThickness& reading) { return is_on_rim(reading.sheet_mm, own); });
     std::vector<MeasuredThickness> formed(within, rim.end());
     rim.erase(within, rim.end());
     add_thickness(object, std::move(formed), ", thickness", known_thickness_misfit);
@@ -138,7 +137,7 @@ void ThermoformModel::add_thickness(int object, std::vector<MeasuredThickness> r
   const auto own = read_parameters<ThermoformOptions>(own_object.setup.parameters);
   Measurement m;
   m.name = own_object.name + what;
-  m.beside = object;
+  m.places_index = object;
   m.scale = known_misfit() / (misfit_share * own.sheet_thickness_mm);
   m.place = in_opening(readings, own);
   m.extent_mm = std::max(own.clamp_opening_x_mm, own.clamp_opening_y_mm);
@@ -263,7 +262,7 @@ std::shared_ptr<const FormedSheet> ThermoformModel::formed(int object, const Eig
 
 Eigen::MatrixXd ThermoformModel::predict(int measurement, const Eigen::VectorXd& u, const Context& context) const {
   const Measurement& measured = measurements_[static_cast<std::size_t>(measurement)];
-  const int object = measured.is_place() ? measurement : measured.beside;
+  const int object = measured.is_place() ? measurement : measured.places_index;
   const FormedObject& own = objects_[static_cast<std::size_t>(object)];
   const auto sheet = formed(object, u, context);
   const ThermoformOptions o = simulation_options(object, u);

@@ -42,7 +42,7 @@ std::vector<ReportField> diagnosis_report_fields() {
       {"gain_interval", "Interval of the gain", "", "95 % interval of the gain."},
       {"held_out", "Held-out data", "", "Which data were held out to measure the errors, as a sentence."},
       {"unseen", "Validation objects", "", "Errors before and after on objects that were not used for fitting."},
-      {"beside", "Thickness", "",
+      {"other_quantities", "Thickness", "",
        "Mean errors of the thickness, where it was measured, on held-out data: before and after the named causes are included."},
       {"noise_floor_mm", "Noise floor", "mm", "Mean distance that measuring noise alone would give."},
       {"noise", "Noise", "", "Noise of every object: as found, as stated in the data, and the number of outliers."},

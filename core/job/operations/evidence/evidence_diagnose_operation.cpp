@@ -100,7 +100,7 @@ std::string thickness_rows(const ThermoformModel& model, const Predictions& cali
       std::snprintf(line, sizeof line, ",%.7g,%.7g,%.5g,%.4g,%.5g,%.5g,%.4g\n", reading.sheet_mm.x(),
                     reading.sheet_mm.y(), reading.thickness_mm, reading.sigma_mm, calibrated[m](row, 0) / scale,
                     extended[m](row, 0) / scale, weights[m][row] * scale * scale);
-      text += table_name(model.objects()[static_cast<std::size_t>(model.measurements()[m].beside)].name) + line;
+      text += table_name(model.objects()[static_cast<std::size_t>(model.measurements()[m].places_index)].name) + line;
     }
   }
   return text;

@@ -228,7 +228,7 @@ OperationResult run_evidence_plan_points(const OperationCall& call, const Json& 
   MeasuringPlanOptions plan_options;
   plan_options.points = o.mark_count;
   plan_options.measured = static_cast<Eigen::Index>(measured.size());
-  plan_options.measured_beside = static_cast<Eigen::Index>(measured_thickness.size());
+  plan_options.measured_others = static_cast<Eigen::Index>(measured_thickness.size());
   plan_options.min_distance = min_distance_mm / model.measurements().front().extent_mm;
   MeasuringPlan plan;
   {

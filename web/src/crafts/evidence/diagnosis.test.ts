@@ -46,7 +46,7 @@ const report: Report = {
   gain_share: 0.5,
   gain_interval: [0.4, 0.6],
   unseen: { objects: ['bowl'], error_before_mm: 1, error_after_mm: 0.5, gain_share: 0.5 },
-  beside: [{ object: 'lamp, thickness', readings: 4, error_before_mm: 0.12, error_after_mm: 0.03 }],
+  other_quantities: [{ object: 'lamp, thickness', readings: 4, error_before_mm: 0.12, error_after_mm: 0.03 }],
   noise_floor_mm: 0.12,
   noise: [{ object: 'lamp', sigma_mm: 0.08 }],
   hypotheses: [

@@ -61,8 +61,8 @@ export interface Diagnosis {
   /** Pairs that look alike, with the measurement that would tell. */
   readonly alike: readonly { readonly labels: readonly string[]; readonly measurement: string }[];
   readonly gains: readonly Gain[];
-  /** What was measured beside places, such as thickness: mean errors on held-out data. */
-  readonly beside: readonly {
+  /** Other quantities than places, such as thickness: mean errors on held-out data. */
+  readonly otherQuantities: readonly {
     readonly title: string;
     readonly readings: number;
     readonly before_mm: number;
@@ -159,7 +159,7 @@ export function readDiagnosis(report: Report): Diagnosis {
       gainOf(report, false, 'Points left out', 'of the fit'),
       ...(isObject(unseen) ? [gainOf(unseen, true, 'Kept for checking', objects.join(', '))] : []),
     ],
-    beside: list(report['beside']).map((one) => ({
+    otherQuantities: list(report['other_quantities']).map((one) => ({
       title: text(one['object']),
       readings: number(one['readings']),
       before_mm: number(one['error_before_mm']),

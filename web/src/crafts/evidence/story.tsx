@@ -103,17 +103,22 @@ const gainWords = ({ unseen, before, after }: Gain): string =>
     after.value < before.value ? 'falls' : 'goes'
   } from ${length(before.value)} to ${length(after.value)}.`;
 
-const thicknessWords = ({ title, readings, before_mm, after_mm }: Diagnosis['beside'][number]): string =>
+const quantityWords = ({
+  title,
+  readings,
+  before_mm,
+  after_mm,
+}: Diagnosis['otherQuantities'][number]): string =>
   `${title}, ${readings} ${readings === 1 ? 'reading' : 'readings'}: the error ${
     after_mm < before_mm ? 'falls' : 'goes'
   } from ${length(before_mm)} to ${length(after_mm)}.`;
 
 /** The most probable answer, what was not used for the fit, and what speaks against it. */
-export function sureWords({ answers, gains, beside, doubts, reading }: Diagnosis): string[] {
+export function sureWords({ answers, gains, otherQuantities, doubts, reading }: Diagnosis): string[] {
   const first = answers[0];
   return [
     ...(first ? [`${percent(first.probability)} for “${first.label}”.`] : []),
-    ...(reading === 'none' ? [] : [...gains.map(gainWords), ...beside.map(thicknessWords)]),
+    ...(reading === 'none' ? [] : [...gains.map(gainWords), ...otherQuantities.map(quantityWords)]),
     ...doubts,
   ];
 }

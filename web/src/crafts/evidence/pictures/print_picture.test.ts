@@ -66,6 +66,7 @@ describe('a print before and after', () => {
     expect(enlargementOf(tent(8))).toBe(1);
     expect(enlargementOf(tent(0.5))).toBe(20);
     expect(enlargementOf(tent(30))).toBe(1);
+    expect(enlargementOf(tent(0))).toBe(50);
   });
 
   it('tells how far features move', () => {

@@ -16,7 +16,9 @@ export interface Pattern {
 export const minPrintPoints = 100;
 const bands = 8;
 const squares = 10;
-const line_mm = 0.6;
+/** Half the width of a line, as a share of a square. */
+const lineShare = 0.03;
+const maxEnlargement = 50;
 type Colour = readonly [number, number, number];
 const paper: Colour = [250, 248, 244];
 const tint: Colour = [226, 190, 140];
@@ -34,13 +36,13 @@ const offLine = (value: number, step: number): number => Math.abs(value - step *
 
 /** Of a place in space: bands of height, and squares as seen from above. */
 export function colourAt(x: number, y: number, z: number, { band_mm, square_mm }: Pattern): Colour {
-  if (Math.min(offLine(x, square_mm), offLine(y, square_mm)) < line_mm) return ink;
+  if (Math.min(offLine(x, square_mm), offLine(y, square_mm)) < lineShare * square_mm) return ink;
   return Math.floor(z / band_mm) % 2 === 0 ? paper : tint;
 }
 
 /** By how much the shift between both prints is drawn larger, so that it is seen: 1 where it is large enough. */
 export const enlargementOf = (residuals: Residuals): number =>
-  Math.max(1, scaleFor(movesOf(residuals), 0.5 * patternOf(residuals).square_mm));
+  Math.min(maxEnlargement, Math.max(1, scaleFor(movesOf(residuals), 0.5 * patternOf(residuals).square_mm)));
 
 /** Red, green, blue and alpha of each pixel; clear where nothing was measured. `shift`: 0 for the print of the calibrated
  *  simulation, 1 for that with the cause, more to enlarge what it changes. */

@@ -26,7 +26,8 @@ constexpr int faces_per_strip = 512;
 MembraneMaterial material_of(const ThermoformOptions& o) {
   return {o.elastic_law,   o.yield_rule,   o.young_modulus_pa * 1e-6,
           o.poisson_ratio, o.creep_per_s,  o.yield_strain,
-          o.viscosity_s,   o.flow_stop_mm, o.anisotropy};
+          o.viscosity_s,   o.flow_stop_mm, o.anisotropy,
+          o.network_share};
 }
 
 /// Stiffness and thickness at the triangles' middles.

@@ -21,9 +21,10 @@ constexpr double for_ever = std::numeric_limits<double>::infinity();
 SheetMesh small_sheet() { return make_sheet_mesh(Vec2(12, 10), 48); }
 HeldVertices none_held(const SheetMesh& sheet) { return HeldVertices(sheet.clamped.size(), 0); }
 
-MembraneMaterial material(ElasticLaw law) {
+MembraneMaterial material(ElasticLaw law, double network_share = 0) {
   MembraneMaterial m;
   m.elastic_law = law;
+  m.network_share = network_share;
   m.creep_per_s = 0;
   m.viscosity_s = 1e-3;
   return m;
@@ -31,8 +32,9 @@ MembraneMaterial material(ElasticLaw law) {
 
 TEST_CASE("EveryLaw.forces_are_the_negative_gradient_of_the_energy") {
   const ElasticLaw law = GENERATE(ElasticLaw::st_venant_kirchhoff, ElasticLaw::stable_neo_hookean);
+  const double network_share = GENERATE(0.0, 0.3, 1.0);
   const SheetMesh sheet = small_sheet();
-  Membrane membrane(sheet.flat_mm, sheet.F, 0.8, material(law));
+  Membrane membrane(sheet.flat_mm, sheet.F, 0.8, material(law, network_share));
   membrane.begin_step(shaken(sheet, 0.1, 1), none_held(sheet));
   for (const double dt : {for_ever, 2e-3}) {
     Positions x = shaken(sheet, 0.3, 2), force = Positions::Zero(x.rows(), 3);
@@ -53,8 +55,9 @@ TEST_CASE("EveryLaw.forces_are_the_negative_gradient_of_the_energy") {
 
 TEST_CASE("EveryLaw.stiffness_in_tension_is_the_derivative_of_the_forces") {
   const ElasticLaw law = GENERATE(ElasticLaw::st_venant_kirchhoff, ElasticLaw::stable_neo_hookean);
+  const double network_share = GENERATE(0.0, 0.3, 1.0);
   const SheetMesh sheet = small_sheet();
-  Membrane membrane(sheet.flat_mm, sheet.F, 0.8, material(law));
+  Membrane membrane(sheet.flat_mm, sheet.F, 0.8, material(law, network_share));
   BlockMatrix matrix(static_cast<int>(sheet.flat_mm.rows()),
                      std::span(sheet.F.data(), static_cast<std::size_t>(sheet.F.size())), 3);
   membrane.use_matrix(matrix);
@@ -86,8 +89,9 @@ TEST_CASE("EveryLaw.stiffness_in_tension_is_the_derivative_of_the_forces") {
 
 TEST_CASE("EveryLaw.stiffness_is_symmetric_and_has_no_negative_curvature") {
   const ElasticLaw law = GENERATE(ElasticLaw::st_venant_kirchhoff, ElasticLaw::stable_neo_hookean);
+  const double network_share = GENERATE(0.0, 0.3, 1.0);
   const SheetMesh sheet = small_sheet();
-  MembraneMaterial flowing = material(law);
+  MembraneMaterial flowing = material(law, network_share);
   flowing.creep_per_s = 500;
   flowing.yield_strain = 0.05;
   Membrane membrane(sheet.flat_mm, sheet.F, 0.8, flowing);
@@ -111,8 +115,9 @@ TEST_CASE("EveryLaw.stiffness_is_symmetric_and_has_no_negative_curvature") {
 
 TEST_CASE("EveryLaw.turning_and_shifting_the_sheet_turns_its_forces") {
   const ElasticLaw law = GENERATE(ElasticLaw::st_venant_kirchhoff, ElasticLaw::stable_neo_hookean);
+  const double network_share = GENERATE(0.0, 0.3, 1.0);
   const SheetMesh sheet = small_sheet();
-  Membrane membrane(sheet.flat_mm, sheet.F, 1, material(law));
+  Membrane membrane(sheet.flat_mm, sheet.F, 1, material(law, network_share));
   const Positions x = shaken(sheet, 0.3, 6);
   membrane.begin_step(x, none_held(sheet));
   const Eigen::Matrix3d turn = Eigen::AngleAxisd(1.1, Vec3(1, 2, -0.5).normalized()).toRotationMatrix();
@@ -128,8 +133,9 @@ TEST_CASE("EveryLaw.turning_and_shifting_the_sheet_turns_its_forces") {
 /// Equal stretch in both directions: sigma h = Y h / (1 - nu) eps for both laws as eps goes to 0.
 TEST_CASE("EveryLaw.small_stretch_has_plane_stress_stiffness") {
   const ElasticLaw law = GENERATE(ElasticLaw::st_venant_kirchhoff, ElasticLaw::stable_neo_hookean);
+  const double network_share = GENERATE(0.0, 0.3, 1.0);
   const SheetMesh sheet = make_sheet_mesh(Vec2(20, 20), 8);
-  const MembraneMaterial m = material(law);
+  const MembraneMaterial m = material(law, network_share);
   Membrane membrane(sheet.flat_mm, sheet.F, 1, m);
   double last = 0;
   for (const double strain : {1e-3, 1e-4}) {

@@ -20,7 +20,7 @@ constexpr double likely = 0.5;
 constexpr double max_left =
     2;  // of the noise: with more left on held-out blocks a named cause is not all of it, or a relative of what it is
 constexpr double plain_strength = 2.5;            // half widths of its interval
-constexpr double distinguishable_strength = 1.5;  // the same: with some fourteen causes tried, 5 % for all of them
+constexpr double distinguishable_strength = 1.5;  // the same: with some fifteen causes tried, 5 % for all of them
                                                   // is 2.9 standard deviations of one, not 1.96
 constexpr std::size_t max_failed = 3;             // checks, of answers that fail: more tries find more by chance
 constexpr double min_gain = 0.01;                 // of the held-out error

@@ -47,6 +47,15 @@ std::string quantity(double value, const std::string& unit) {
   return unit.empty() ? figure(value, 2) : figure(value, 2) + "\u2009" + xml_attribute(unit);
 }
 
+const char* fault_title(FaultOf fault_of) {
+  switch (fault_of) {
+    case FaultOf::measurement: return "In your measurement:";
+    case FaultOf::simulation: return "In our simulation:";
+    case FaultOf::machine: break;
+  }
+  return "At your machine:";
+}
+
 constexpr const char* style = R"(<style>
 :root{color-scheme:light dark;--ink:#2b2925;--dim:#6b675f;--line:#dcd8d0;--paper:#f6f4f0;--panel:#fff;--blue:#2b62b5;--good:#2f6f48;--warn:#8a5a00}
 @media(prefers-color-scheme:dark){:root{--ink:#ece9e3;--dim:#a9a49a;--line:#45423c;--paper:#201f1c;--panel:#2a2825;--blue:#86b0f0;--good:#84c79c;--warn:#e5b45c}}
@@ -174,12 +183,12 @@ std::string strengths_table(const DiagnosisReport& report) {
   for (const CauseFinding& f : report.diagnosis.causes) {
     if (!is_listed(report, f)) continue;
     const Cause& cause = report.model.causes()[static_cast<std::size_t>(f.cause)];
-    rows += "<tr><td>" + xml_attribute(cause.label) + "</td><td class=\"n\">" + quantity(f.strength, cause.unit) +
-            "</td><td class=\"n\">" +
+    rows += "<tr><td>" + xml_attribute(cause.label) + "</td><td>" + fault_name(cause.fault_of) +
+            "</td><td class=\"n\">" + quantity(f.strength, cause.unit) + "</td><td class=\"n\">" +
             (f.fitted ? figure(f.low, 2) + " to " + figure(f.high, 2) : std::string("not fitted")) + "</td></tr>";
   }
   if (rows.empty()) return "";
-  return "<h2>How strong</h2><div class=\"panel scroll\"><table><tr><th>Cause</th><th class=\"n\">Strength</th><th class=\"n\">95 % interval</th></tr>" +
+  return "<h2>How strong</h2><div class=\"panel scroll\"><table><tr><th>Cause</th><th>Whose</th><th class=\"n\">Strength</th><th class=\"n\">95 % interval</th></tr>" +
          rows + "</table></div>";
 }
 
@@ -272,8 +281,9 @@ std::string diagnosis_page(const DiagnosisReport& report) {
       const auto finding =
           std::find_if(d.causes.begin(), d.causes.end(), [&](const CauseFinding& f) { return f.cause == cause; });
       const std::string words = finding == d.causes.end() ? "" : model.in_words(cause, finding->values);
-      html += "<div class=\"panel\"><b>" + xml_attribute(c.label) + "</b><p>" +
-              xml_attribute(words.empty() ? c.explanation : words) + "</p><p>" + xml_attribute(c.remedy) + "</p></div>";
+      html += std::string("<div class=\"panel\"><span class=\"dim\">") + fault_title(c.fault_of) + "</span> <b>" +
+              xml_attribute(c.label) + "</b><p>" + xml_attribute(words.empty() ? c.explanation : words) + "</p><p>" +
+              xml_attribute(c.remedy) + "</p></div>";
     }
   }
   for (const SeparatedPair& s : report.separations) {

@@ -142,6 +142,7 @@ Json diagnosis_json(const DiagnosisReport& report) {
                               {"min_visible_strength", visible},
                               {"least_visible", visible},  // the name of version 0.1
                               {"in_words", f.fitted ? model.in_words(f.cause, f.values) : ""},
+                              {"fault_of", fault_name(cause.fault_of)},
                               {"explanation", cause.explanation},
                               {"remedy", cause.remedy}});
   }

@@ -34,6 +34,19 @@ struct ModelParameter {
   bool one_sided() const { return role != ParameterRole::base && low >= nominal; }
 };
 
+/// Whose a cause is: what the maker does or has; how it was measured; what the simulation leaves out.
+enum class FaultOf { machine, measurement, simulation };
+
+/// "machine", "measurement", "simulation": in reports.
+constexpr const char* fault_name(FaultOf fault_of) {
+  switch (fault_of) {
+    case FaultOf::measurement: return "measurement";
+    case FaultOf::simulation: return "simulation";
+    case FaultOf::machine: break;
+  }
+  return "machine";
+}
+
 /// An effect as a maker names it; one or more parameters (a gradient has two).
 struct Cause {
   std::string name, label;      // "heating_gradient", "Uneven heating from side to side"
@@ -43,6 +56,7 @@ struct Cause {
   std::string unit;             // of its strength: the Euclidean norm of its parameters' values
   double gain_error = 0;  // standard deviation, as a share of its strength: how differently equally good simulations
                           // turn it into movement
+  FaultOf fault_of = FaultOf::machine;
 };
 
 /// What was measured of one object. `place` are coordinates on the object, in [0, 1] x [0, 1] about, by which

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "thermoform/sheet/membrane_group.h"
+#include "thermoform/sheet/membrane_law.h"
 #include "thermoform/sheet/membrane_stiffness.h"
 
 namespace formwright {
@@ -32,7 +33,7 @@ Membrane::Membrane(const TextureCoordinates& flat_mm, const Triangles& F, double
     group.min_vertex = std::numeric_limits<int>::max();
     group.max_vertex = 0;
     group.past00 = group.past01 = group.past11 = Double4{};
-    group.creep = group.weight = Double4{};
+    group.creep = group.weight = group.network_weight = Double4{};
     for (int l = 0; l < 4; ++l) {
       const int face = std::min(4 * g + l, faces - 1);  // empty lanes repeat the last triangle
       Eigen::Matrix2d edges;
@@ -78,6 +79,9 @@ void Membrane::begin_step(const Positions& x, const HeldVertices& held) {
     // With h = V/A alone a bubble has a largest pressure, beyond which it would grow until it is nothing; plastic that
     // has been drawn out that far hardens. So the stiffness stays that of the thickness at which the flow stops.
     g.weight = rest_area * maximum(thickness, Double4{} + material_.flow_stop_mm) * (g.stiffness * g.chill);
+    // The network's state without stress is the flat sheet, and a chill does not stiffen it.
+    g.network_weight = 0.5 / (g.flat00 * g.flat11 - g.flat01 * g.flat10) *
+                       maximum(thickness, Double4{} + material_.flow_stop_mm) * g.stiffness;
     g.creep = material_.creep_per_s / g.chill;
     if (material_.yield_rule == YieldRule::total_strain) {
       deform(g, x, true, total);
@@ -147,79 +151,92 @@ void Membrane::use_matrix(const BlockMatrix& matrix) {
 }
 
 template <ElasticLaw law, bool with_matrix>
-void Membrane::add_group(const Group& g, const Positions& x, double dt_s, int begin, int end, Positions& force,
-                         BlockMatrix* matrix) const {
-  Deformation d;
-  deform(g, x, false, d);
+void Membrane::flowing_response(const Group& g, const Strain& strain, double dt_s, Response& r) const {
   Flow f;
-  flow(d.strain, g.creep, dt_s, material_.yield_rule, material_.yield_strain, f);
+  flow(strain, g.creep, dt_s, material_.yield_rule, material_.yield_strain, f);
   // A sheet that is stiffer along x is an even one whose strains count for more there.
-  const Strain e = scaled(d.strain);
+  const Strain e = scaled(strain);
+  respond<law>(material_, material_.young_mpa * (1 - material_.network_share), e, f.kept, r);
   const double nu = material_.poisson_ratio, plane = material_.young_mpa / (1 - nu * nu);
   const double viscous = material_.viscosity_s / dt_s;  // 0 for an endless step
-
-  // Stress S (second Piola-Kirchhoff) and tangent D over (e00, e11, 2 e01).
-  Double4 s00, s01, s11, d00, d01, d02, d11, d12, d22;
-  if constexpr (law == ElasticLaw::st_venant_kirchhoff) {
-    d00 = d11 = Double4{} + plane;
-    d01 = Double4{} + plane * nu;
-    d22 = Double4{} + plane * 0.5 * (1 - nu);
-    d02 = d12 = Double4{};
-    s00 = f.kept * (d00 * e.e00 + d01 * e.e11);
-    s11 = f.kept * (d01 * e.e00 + d11 * e.e11);
-    s01 = f.kept * (2.0 * d22 * e.e01);
-  } else {
-    const Lame l = lame(material_);
-    const Double4 c00 = 1.0 + 2.0 * f.kept * e.e00, c01 = 2.0 * f.kept * e.e01, c11 = 1.0 + 2.0 * f.kept * e.e11;
-    const Double4 determinant = maximum(c00 * c11 - c01 * c01, Double4{} + 1e-9);
-    const Double4 J = root(determinant), i00 = c11 / determinant, i01 = -c01 / determinant, i11 = c00 / determinant,
-                  zero{};
-    const Double4 p = (l.lambda * (J - 1.0) - l.mu) * J;
-    s00 = l.mu + p * i00;
-    s01 = p * i01;
-    s11 = l.mu + p * i11;
-    const Double4 outer = maximum((l.lambda * (2.0 * J - 1.0) - l.mu) * J, zero), inner = maximum(-2.0 * p, zero);
-    d00 = outer * i00 * i00 + inner * i00 * i00;
-    d01 = outer * i00 * i11 + inner * i01 * i01;
-    d02 = outer * i00 * i01 + inner * i00 * i01;
-    d11 = outer * i11 * i11 + inner * i11 * i11;
-    d12 = outer * i11 * i01 + inner * i11 * i01;
-    d22 = outer * i01 * i01 + inner * 0.5 * (i00 * i11 + i01 * i01);
-  }
   if constexpr (with_matrix) {
     // d(kept eps) = kept (d eps) less what flows along eps itself; made symmetric in the metric of D.
-    const Double4 q0 = d00 * e.e00 + d01 * e.e11 + 2.0 * d02 * e.e01,
-                  q1 = d01 * e.e00 + d11 * e.e11 + 2.0 * d12 * e.e01;
-    const Double4 q2 = d02 * e.e00 + d12 * e.e11 + 2.0 * d22 * e.e01;
+    const Double4 q0 = r.d00 * e.e00 + r.d01 * e.e11 + 2.0 * r.d02 * e.e01,
+                  q1 = r.d01 * e.e00 + r.d11 * e.e11 + 2.0 * r.d12 * e.e01;
+    const Double4 q2 = r.d02 * e.e00 + r.d12 * e.e11 + 2.0 * r.d22 * e.e01;
     const Double4 lost = f.lost / maximum(q0 * e.e00 + q1 * e.e11 + 2.0 * q2 * e.e01, Double4{} + 1e-30);
-    d00 = f.kept * d00 - lost * q0 * q0 + viscous * plane;
-    d01 = f.kept * d01 - lost * q0 * q1 + viscous * plane * nu;
-    d02 = f.kept * d02 - lost * q0 * q2;
-    d11 = f.kept * d11 - lost * q1 * q1 + viscous * plane;
-    d12 = f.kept * d12 - lost * q1 * q2;
-    d22 = f.kept * d22 - lost * q2 * q2 + viscous * plane * 0.5 * (1 - nu);
-    d00 *= along_ * along_;
-    d01 *= along_ * across_;
-    d02 *= along_ * diagonal_;
-    d11 *= across_ * across_;
-    d12 *= across_ * diagonal_;
-    d22 *= diagonal_ * diagonal_;
+    r.d00 = f.kept * r.d00 - lost * q0 * q0 + viscous * plane;
+    r.d01 = f.kept * r.d01 - lost * q0 * q1 + viscous * plane * nu;
+    r.d02 = f.kept * r.d02 - lost * q0 * q2;
+    r.d11 = f.kept * r.d11 - lost * q1 * q1 + viscous * plane;
+    r.d12 = f.kept * r.d12 - lost * q1 * q2;
+    r.d22 = f.kept * r.d22 - lost * q2 * q2 + viscous * plane * 0.5 * (1 - nu);
   }
   const Strain past = scaled({g.past00, g.past01, g.past11});
   const Double4 v00 = e.e00 - past.e00, v01 = e.e01 - past.e01, v11 = e.e11 - past.e11;
-  s00 += viscous * plane * (v00 + nu * v11);
-  s01 += viscous * plane * (1 - nu) * v01;
-  s11 += viscous * plane * (nu * v00 + v11);
-  s00 *= along_;
-  s01 *= diagonal_;
-  s11 *= across_;
+  r.s00 += viscous * plane * (v00 + nu * v11);
+  r.s01 += viscous * plane * (1 - nu) * v01;
+  r.s11 += viscous * plane * (nu * v00 + v11);
+}
 
-  const Double4& w = g.weight;
-  Double4 force1[3], force2[3];
+template <bool with_matrix>
+void Membrane::add_response(const Response& in_even_sheet, const Deformation& d, const RestFrame& rest,
+                            const Double4& w, Double4 (&force1)[3], Double4 (&force2)[3], CornerBlocks* K) const {
+  Response r = in_even_sheet;
+  r.s00 *= along_;
+  r.s01 *= diagonal_;
+  r.s11 *= across_;
   for (int k = 0; k < 3; ++k) {
-    const Double4 p0 = w * (d.f0[k] * s00 + d.f1[k] * s01), p1 = w * (d.f0[k] * s01 + d.f1[k] * s11);
-    force1[k] = p0 * g.b00 + p1 * g.b01;
-    force2[k] = p0 * g.b10 + p1 * g.b11;
+    const Double4 p0 = w * (d.f0[k] * r.s00 + d.f1[k] * r.s01), p1 = w * (d.f0[k] * r.s01 + d.f1[k] * r.s11);
+    force1[k] += p0 * rest.b00 + p1 * rest.b01;
+    force2[k] += p0 * rest.b10 + p1 * rest.b11;
+  }
+  if constexpr (with_matrix) {
+    r.d00 *= along_ * along_;
+    r.d01 *= along_ * across_;
+    r.d02 *= along_ * diagonal_;
+    r.d11 *= across_ * across_;
+    r.d12 *= across_ * diagonal_;
+    r.d22 *= diagonal_ * diagonal_;
+    // The geometric part needs a stress without compression to stay positive semi-definite.
+    const Double4 zero{}, middle = 0.5 * (r.s00 + r.s11), half = 0.5 * (r.s00 - r.s11);
+    const Double4 radius = root(half * half + r.s01 * r.s01);
+    const Double4 small = middle - radius,
+                  share = maximum(middle + radius, zero) / maximum(2.0 * radius, Double4{} + 1e-30);
+    const auto pulled = small >= zero;
+    const Double4 t00 = pulled ? r.s00 : share * (r.s00 - small), t01 = pulled ? r.s01 : share * r.s01,
+                  t11 = pulled ? r.s11 : share * (r.s11 - small);
+
+    const auto single = [](const Double4& value) -> Float4 { return __builtin_convertvector(value, Float4); };
+    const StiffnessParts parts{{{single(rest.b00), single(rest.b01)}, {single(rest.b10), single(rest.b11)}},
+                               {single(d.f0[0]), single(d.f0[1]), single(d.f0[2])},
+                               {single(d.f1[0]), single(d.f1[1]), single(d.f1[2])},
+                               {single(w * r.d00), single(w * r.d01), single(w * r.d02), single(w * r.d11),
+                                single(w * r.d12), single(w * r.d22)},
+                               {single(w * t00), single(w * t01), single(w * t11)}};
+    corner_blocks(parts, *K);
+  }
+}
+
+template <ElasticLaw law, bool with_matrix>
+void Membrane::add_group(const Group& g, const Positions& x, double dt_s, int begin, int end, Positions& force,
+                         BlockMatrix* matrix) const {
+  Double4 force1[3]{}, force2[3]{};
+  CornerBlocks K;
+  Deformation d;
+  Response r;
+  deform(g, x, false, d);
+  flowing_response<law, with_matrix>(g, d.strain, dt_s, r);
+  add_response<with_matrix>(r, d, {g.b00, g.b01, g.b10, g.b11}, g.weight, force1, force2, &K);
+  if (material_.network_share > 0) {
+    deform(g, x, true, d);
+    respond<law>(material_, material_.young_mpa * material_.network_share, scaled(d.strain), Double4{} + 1.0, r);
+    CornerBlocks of_network;
+    add_response<with_matrix>(r, d, {g.flat00, g.flat01, g.flat10, g.flat11}, g.network_weight, force1, force2,
+                              &of_network);
+    if constexpr (with_matrix) {
+      for (int i = 0; i < 81; ++i) (&K[0][0][0][0])[i] += (&of_network[0][0][0][0])[i];
+    }
   }
   for (int l = 0; l < g.lanes; ++l) {
     const auto at = static_cast<std::size_t>(l);
@@ -231,24 +248,6 @@ void Membrane::add_group(const Group& g, const Positions& x, double dt_s, int be
     }
   }
   if constexpr (with_matrix) {
-    // The geometric part needs a stress without compression to stay positive semi-definite.
-    const Double4 zero{}, middle = 0.5 * (s00 + s11), half = 0.5 * (s00 - s11);
-    const Double4 radius = root(half * half + s01 * s01);
-    const Double4 small = middle - radius,
-                  share = maximum(middle + radius, zero) / maximum(2.0 * radius, Double4{} + 1e-30);
-    const auto pulled = small >= zero;
-    const Double4 t00 = pulled ? s00 : share * (s00 - small), t01 = pulled ? s01 : share * s01,
-                  t11 = pulled ? s11 : share * (s11 - small);
-
-    const auto single = [](const Double4& value) -> Float4 { return __builtin_convertvector(value, Float4); };
-    const StiffnessParts parts{
-        {{single(g.b00), single(g.b01)}, {single(g.b10), single(g.b11)}},
-        {single(d.f0[0]), single(d.f0[1]), single(d.f0[2])},
-        {single(d.f1[0]), single(d.f1[1]), single(d.f1[2])},
-        {single(w * d00), single(w * d01), single(w * d02), single(w * d11), single(w * d12), single(w * d22)},
-        {single(w * t00), single(w * t01), single(w * t11)}};
-    CornerBlocks K;
-    corner_blocks(parts, K);
     for (std::size_t a = 0; a < 3; ++a)
       for (std::size_t b = 0; b < 3; ++b) {
         std::array<std::array<Float4, 3>, 4> block;
@@ -289,28 +288,22 @@ void Membrane::add_forces_of(int first_face, int end_face, const Positions& x, d
 }
 
 double Membrane::energy(const Positions& x, double dt_s) const {
-  const double nu = material_.poisson_ratio, plane = material_.young_mpa / (1 - nu * nu);
-  const auto stretching = [&](const Double4& e00, const Double4& e01, const Double4& e11) {
-    const Double4 trace = e00 + e11;
-    return Double4((1 - nu) * (e00 * e00 + 2.0 * e01 * e01 + e11 * e11) + nu * trace * trace) * (0.5 * plane);
-  };
   double sum = 0;
   Deformation d;
   for (const Group& g : groups_) {
     if (!active_[static_cast<std::size_t>(g.first_face / 4)]) continue;
     deform(g, x, false, d);
     const Strain e = scaled(d.strain), past = scaled({g.past00, g.past01, g.past11});
-    Double4 density;
-    if (material_.elastic_law == ElasticLaw::st_venant_kirchhoff) {
-      density = stretching(e.e00, e.e01, e.e11);
-    } else {
-      const Lame l = lame(material_);
-      const Double4 c00 = 1.0 + 2.0 * e.e00, c01 = 2.0 * e.e01, c11 = 1.0 + 2.0 * e.e11;
-      const Double4 J = root(maximum(c00 * c11 - c01 * c01, Double4{} + 1e-9));
-      density = 0.5 * l.mu * (c00 + c11 - 2.0) - l.mu * (J - 1.0) + 0.5 * l.lambda * (J - 1.0) * (J - 1.0);
-    }
-    density += material_.viscosity_s / dt_s * stretching(e.e00 - past.e00, e.e01 - past.e01, e.e11 - past.e11);
-    sum += lane_sum(g.weight * density, g.lanes);
+    const Double4 flowing = energy_density(material_, material_.young_mpa * (1 - material_.network_share), e);
+    const Double4 viscous =
+        material_.viscosity_s / dt_s *
+        stretching_density(material_, material_.young_mpa, {e.e00 - past.e00, e.e01 - past.e01, e.e11 - past.e11});
+    sum += lane_sum(g.weight * (flowing + viscous), g.lanes);
+    if (material_.network_share == 0) continue;
+    deform(g, x, true, d);
+    sum += lane_sum(
+        g.network_weight * energy_density(material_, material_.young_mpa * material_.network_share, scaled(d.strain)),
+        g.lanes);
   }
   return sum;
 }

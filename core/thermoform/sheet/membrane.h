@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 // The sheet resists stretching, flows and thins: thesis 4.2.2. Discrete viscous sheets (Batty, Uribe, Audoly,
-// Grinspun 2012) with additive plasticity on the Green strain (eq. 4.1 and what follows it).
+// Grinspun 2012) with additive plasticity on the Green strain (eq. 4.1 and what follows it). Beside what flows there
+// may be a network of chains that never does: Green and Tobolsky's lasting part of a melt (1946).
 //
 // Units inside the simulation: mm, N and s; stress in MPa = N/mm^2, energy in mJ, mass in tonnes (N s^2/mm).
 #include <span>
@@ -10,6 +11,7 @@
 #include "base/lanes.h"
 #include "geometry/mesh/triangle_mesh.h"
 #include "thermoform/solver/block_matrix.h"
+#include "thermoform/sheet/membrane_stiffness.h"
 #include "thermoform/sheet/thermoform_options.h"
 
 namespace formwright {
@@ -25,6 +27,7 @@ struct MembraneMaterial {
   double flow_stop_mm = 0.2;
   double anisotropy =
       0;  // stiffness along x times 1 + anisotropy, along y times 1 - anisotropy, between them their geometric mean
+  double network_share = 0;  // of the stiffness: it never flows, and has no stress where the sheet is flat
 };
 
 /// What varies over the sheet: factors, one a triangle; nothing where all are 1.
@@ -34,7 +37,10 @@ struct SheetVariation {
 
 namespace membrane_detail {
 struct Strain;
-}
+struct Deformation;
+struct RestFrame;
+struct Response;
+}  // namespace membrane_detail
 
 /// Which vertices do not move by themselves: clamped or stuck.
 using HeldVertices = std::vector<char>;
@@ -89,6 +95,15 @@ class Membrane {
   struct alignas(32) Group;  // four triangles
   /// What the even law sees of a strain.
   membrane_detail::Strain scaled(const membrane_detail::Strain& strain) const;
+  /// Of what flows: stress, with viscosity, and its tangent within a step.
+  template <ElasticLaw law, bool with_matrix>
+  void flowing_response(const Group& group, const membrane_detail::Strain& strain, double dt_s,
+                        membrane_detail::Response& response) const;
+  /// Adds a response's forces on corners 1 and 2, times `weight`; its stiffness is written to `stiffness`.
+  template <bool with_matrix>
+  void add_response(const membrane_detail::Response& in_even_sheet, const membrane_detail::Deformation& deformation,
+                    const membrane_detail::RestFrame& rest, const Double4& weight, Double4 (&force1)[3],
+                    Double4 (&force2)[3], CornerBlocks* stiffness) const;
   template <ElasticLaw law, bool with_matrix>
   void add_group(const Group& group, const Positions& x, double dt_s, int begin, int end, Positions& force,
                  BlockMatrix* matrix) const;

@@ -16,6 +16,7 @@ struct alignas(32) Membrane::Group {
   Double4 stiffness;               // times the material's modulus, where the sheet was flat
   Double4 chill;                   // times the same, now: what touches cold grows stiff
   Double4 weight;                  // rest area times thickness, of this step
+  Double4 network_weight;          // the flat sheet's area times thickness, of this step
   Double4 creep;                   // 1/s, of this step: 0 where nothing may flow
   Double4 past00, past01, past11;  // strain at the start of the step
   std::array<std::array<int, 4>, 3> vertex;
@@ -27,6 +28,11 @@ namespace membrane_detail {
 
 struct Strain {
   Double4 e00, e01, e11;
+};
+
+/// Inverse of [rest edge 1, rest edge 2].
+struct RestFrame {
+  const Double4 &b00, &b01, &b10, &b11;
 };
 
 /// Deformation of four triangles: f0, f1 are the images of the rest frame's axes.
@@ -99,17 +105,6 @@ inline double lane_sum(const Double4& a, int lanes) {
   double sum = 0;
   for (int l = 0; l < lanes; ++l) sum += a[l];
   return sum;
-}
-
-/// 2D Lame parameters of plane stress, MPa; lambda is that of the stable neo-Hookean energy
-/// mu/2 (tr C - 2) - mu (J - 1) + lambda/2 (J - 1)^2 (Smith, de Goes, Kim 2018, in two dimensions and without the
-/// logarithm, which keeps rest stability when lambda = lambda_Lame + mu).
-struct Lame {
-  double mu, lambda;
-};
-inline Lame lame(const MembraneMaterial& m) {
-  const double mu = m.young_mpa / (2 * (1 + m.poisson_ratio));
-  return {mu, m.young_mpa * m.poisson_ratio / (1 - m.poisson_ratio * m.poisson_ratio) + mu};
 }
 
 }  // namespace membrane_detail

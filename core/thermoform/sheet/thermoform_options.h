@@ -43,6 +43,7 @@ struct ThermoformOptions : SheetEffects {
   double creep_per_s = 500;
   double yield_strain = 0.1;
   double viscosity_s = 2.5e-5;
+  double network_share = 0;
   double poisson_ratio = 0.35;
   double density_kg_per_m3 = 1330;
   ElasticLaw elastic_law = ElasticLaw::st_venant_kirchhoff;
@@ -132,6 +133,12 @@ struct ThermoformOptions : SheetEffects {
               "Resistance to fast stretching, in seconds: the viscous stress at a strain rate of 1/s divided by the elastic stiffness. Larger values slow the sheet down; 0 is none.")
               .group("Material")
               .slider(0, 1e-4),
+          parameter(
+              "network_share", &ThermoformOptions::network_share, "Stiffness that never flows", unit::none, 0, 1,
+              "Share of the stiffness that keeps pulling however far the sheet is drawn, as rubber does. 0: all flows, so that steep walls draw very thin; more keeps them thicker. 1 is rubber.")
+              .group("Material")
+              .slider(0, 0.5)
+              .advanced(),
           parameter(
               "poisson_ratio", &ThermoformOptions::poisson_ratio, "Poisson's ratio", unit::none, 0, 0.49,
               "How much the sheet narrows when it is stretched, as a fraction of the stretch. 0.35 is usual for hot plastic.")

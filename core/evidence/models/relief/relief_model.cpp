@@ -152,13 +152,17 @@ ReliefModel::ReliefModel(std::vector<PhotographedRelief> reliefs) : reliefs_(std
               "The light came from another direction than stated.",
               "Measure the light's place again, or fix it to the stand.",
               {tilt_x, tilt_y},
-              "°"},
+              "°",
+              0,
+              FaultOf::measurement},
              {"light_distance",
               "Light at another distance",
               "The light stood nearer or farther than stated: brightness falls off over the relief.",
               "Move the light farther away, or measure its distance.",
               {light_nearness},
-              "1/m"},
+              "1/m",
+              0,
+              FaultOf::measurement},
              {"gloss",
               "Gloss",
               "The surface shines.",
@@ -170,7 +174,9 @@ ReliefModel::ReliefModel(std::vector<PhotographedRelief> reliefs) : reliefs_(std
               "Parts of the relief throw shadows on others.",
               "Raise the light, or design for less depth.",
               {cast_shadow},
-              ""},
+              "",
+              0,
+              FaultOf::simulation},
              {"printer_blur",
               "Machine blurs detail",
               "The printer's nozzle or the cutter rounded fine detail.",
@@ -188,7 +194,9 @@ ReliefModel::ReliefModel(std::vector<PhotographedRelief> reliefs) : reliefs_(std
               "The camera stood beside the viewpoint.",
               "Put the camera where the relief was made to be seen from.",
               {viewer_x, viewer_y},
-              "mm"}};
+              "mm",
+              0,
+              FaultOf::measurement}};
   for (const PhotographedRelief& relief : reliefs_) {
     Measurement m;
     m.name = relief.name;

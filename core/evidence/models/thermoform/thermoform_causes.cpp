@@ -31,6 +31,7 @@ constexpr double sheet_gain_error = 0.05;
 struct CauseTable {
   const char *name, *label, *explanation, *remedy;
   std::vector<VariedParameter> parameters;
+  FaultOf fault_of = FaultOf::machine;
 };
 
 const std::vector<CauseTable>& cause_table() {
@@ -99,14 +100,22 @@ const std::vector<CauseTable>& cause_table() {
        "Scan of the wrong size",
        "The 3D scan is larger or smaller than the object.",
        "Put a known length into the scan and scale by it.",
-       {{"scan_scale", false, -0.1, 0.1, 0.01, 0.008}}},
+       {{"scan_scale", false, -0.1, 0.1, 0.01, 0.008}},
+       FaultOf::measurement},
       {"scan_shift",
        "Scan in the wrong place",
        "The scan is not in the machine's coordinates, but shifted.",
        "Align the scan by the clamp's rim or by marks on the platform.",
        {{"scan_shift_x_mm", false, -10, 10, 1, 0.7},
         {"scan_shift_y_mm", false, -10, 10, 1, 0.7},
-        {"scan_shift_z_mm", false, -10, 10, 1, 0.7}}}};
+        {"scan_shift_z_mm", false, -10, 10, 1, 0.7}},
+       FaultOf::measurement},
+      {"lasting_network",
+       "Plastic that never flows",
+       "Part of the hot plastic never flows: the more it is drawn, the more it pulls, and steep walls stay thicker than the simulation has them.",
+       "Nothing at the machine: simulate and print with this profile, whose network_share keeps that part. It takes no more time.",
+       {{"network_share", false, 0, 0.6, 0.1, 0.05}},
+       FaultOf::simulation}};
   return table;
 }
 
@@ -162,7 +171,7 @@ void declare_thermoform_parameters(const Json& nominal, bool fit_mould_place, co
   for (const CauseTable& row : cause_table()) {
     if (fit_mould_place && std::string_view(row.name) == "mould_shift") continue;
     if (std::find(without.begin(), without.end(), row.name) != without.end()) continue;
-    Cause cause{row.name, row.label, row.explanation, row.remedy, {}, ""};
+    Cause cause{row.name, row.label, row.explanation, row.remedy, {}, "", 0, row.fault_of};
     for (const VariedParameter& varied : row.parameters) cause.parameters.push_back(add(varied, ParameterRole::effect));
     cause.unit = parameters.back().unit;
     if (std::any_of(infos.begin(), infos.begin() + static_cast<std::ptrdiff_t>(of_the_sheet),

@@ -27,7 +27,7 @@ std::vector<ReportField> diagnosis_report_fields() {
        "Probability of all answers that are not listed, each less than 0.001."},
       {"failed", "Failed checks", "", "Causes that would fit but failed a check, and why, as a sentence."},
       {"causes", "Causes", "",
-       "Every cause with its name, probability, strength, unit, 95 % interval, values and remedy; the most probable first."},
+       "Every cause with its name, probability, strength, unit, 95 % interval, values, remedy and whose it is (fault_of: machine, measurement or simulation); the most probable first."},
       {"not_separable", "Not distinguishable", "",
        "Pairs of causes with similar effects, how similar they are (0 to 1), and the measurement that would distinguish them."},
       {"error_before_mm", "Error before", "mm",

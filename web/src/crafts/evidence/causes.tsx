@@ -86,6 +86,12 @@ function NotNeeded({ diagnosis, shown }: { diagnosis: Diagnosis; shown: readonly
   );
 }
 
+const faultTitles = {
+  machine: 'At your machine',
+  measurement: 'In your measurement',
+  simulation: 'In our simulation',
+} as const;
+
 function CauseCard({ session, cause, named }: { session: EvidenceSession; cause: Cause; named: boolean }) {
   const open = useSignal(false);
   const id = useId();
@@ -97,6 +103,7 @@ function CauseCard({ session, cause, named }: { session: EvidenceSession; cause:
         aria-controls={id}
         onClick={() => (open.value = !open.value)}
       >
+        <small class="fault-of">{faultTitles[cause.faultOf]}</small>
         <strong>{cause.label}</strong>
         <span class="cause-line">
           <span>

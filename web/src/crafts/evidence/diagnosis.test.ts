@@ -27,6 +27,7 @@ const report: Report = {
       interval: [0.38, 0.42],
       values: { heating_gradient_x: 0.4 },
       remedy: 'Turn the heater.',
+      fault_of: 'simulation',
       in_words: 'The sheet was hotter on the left.',
     },
     {
@@ -59,6 +60,7 @@ describe('a diagnosis', () => {
   it('is read with its gains, on parts left out and on other objects', () => {
     const diagnosis = readDiagnosis(report);
     expect(diagnosis.named).toEqual(['heating_gradient']);
+    expect(diagnosis.causes.map(({ faultOf }) => faultOf)).toEqual(['simulation', 'machine']);
     expect(diagnosis.gains.map(({ title }) => title)).toEqual(['Points left out', 'Kept for checking']);
     expect(diagnosis.gains[0]?.after).toEqual({ value: 0.14, low: 0.1, high: 0.2 });
     expect(diagnosis.gains[1]?.after).toEqual({ value: 0.5, low: 0.5, high: 0.5 });

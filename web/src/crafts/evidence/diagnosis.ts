@@ -11,6 +11,9 @@ export interface Estimate {
   readonly high: number;
 }
 
+/** Whose a cause is: what the maker does or has; how it was measured; what the simulation leaves out. */
+export type FaultOf = 'machine' | 'measurement' | 'simulation';
+
 export interface Cause {
   readonly name: string;
   readonly label: string;
@@ -22,6 +25,7 @@ export interface Cause {
   /** What happened, in a sentence; empty where the core has none. */
   readonly inWords: string;
   readonly remedy: string;
+  readonly faultOf: FaultOf;
 }
 
 /** What may be wrong; the probabilities of all answers add up to 1. */
@@ -135,6 +139,7 @@ export function readDiagnosis(report: Report): Diagnosis {
     ),
     inWords: text(cause['in_words']),
     remedy: text(cause['remedy']),
+    faultOf: (text(cause['fault_of']) || 'machine') as FaultOf,
   }));
   const labelOf = (name: string) => causes.find((cause) => cause.name === name)?.label ?? name;
   const unseen = report['unseen'];

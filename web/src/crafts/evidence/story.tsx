@@ -34,7 +34,7 @@ export function Story({ session, diagnosis }: { session: EvidenceSession; diagno
           ))}
           {residuals && diagnosis.named.length > 0 ? (
             <>
-              {printWords(residuals)}
+              {printWords(residuals, diagnosis)}
               {residuals.count >= minPrintPoints ? (
                 <Button size="small" class="story-look" onClick={() => (view.value = 'print')}>
                   See the print before and after
@@ -91,11 +91,12 @@ function todo({ reading, named, causes }: Diagnosis): string[] {
   return causes.filter(({ name }) => named.includes(name)).map(({ remedy }) => remedy);
 }
 
-function printWords(residuals: Residuals): string {
+function printWords(residuals: Residuals, { named, causes }: Diagnosis): string {
   const moved = movedBy(residuals);
+  const machineIsWell = causes.every(({ name, faultOf }) => !named.includes(name) || faultOf === 'simulation');
   return moved === null
     ? ''
-    : `Or print for the machine as it is: the simulation with this cause puts the features of the next print ${length(moved.mean_mm)} elsewhere on average, up to ${length(moved.largest_mm)}.`;
+    : `${machineIsWell ? 'The' : 'Or print for the machine as it is: the'} simulation with this cause puts the features of the next print ${length(moved.mean_mm)} elsewhere on average, up to ${length(moved.largest_mm)}.`;
 }
 
 const gainWords = ({ unseen, before, after }: Gain): string =>

@@ -93,7 +93,9 @@ function todo({ reading, named, causes }: Diagnosis): string[] {
 
 function printWords(residuals: Residuals, { named, causes }: Diagnosis): string {
   const moved = movedBy(residuals);
-  const machineIsWell = causes.every(({ name, faultOf }) => !named.includes(name) || faultOf === 'simulation');
+  const machineIsWell = causes.every(
+    ({ name, faultOf }) => !named.includes(name) || faultOf === 'simulation',
+  );
   return moved === null
     ? ''
     : `${machineIsWell ? 'The' : 'Or print for the machine as it is: the'} simulation with this cause puts the features of the next print ${length(moved.mean_mm)} elsewhere on average, up to ${length(moved.largest_mm)}.`;

@@ -44,7 +44,7 @@ async function measure(page: Page, mark: number): Promise<void> {
 test('marks are chosen, drawn, typed in, kept and compared', async ({ page }) => {
   await choose(page, 500); // a coarse sheet: what is chosen is not the question here
   await expect(strip(page, 'Marks chosen')).toBeVisible({ timeout: 300_000 });
-  await expect(page.getByText(/^\d+ of 14 causes would show at their usual strength/)).toBeVisible();
+  await expect(page.getByText(/^\d+ of 15 causes would show at their usual strength/)).toBeVisible();
   await expect(
     page.getByRole('row', { name: /^Sheet slips in the clamp ?: shows at usual strength/ }),
   ).toBeVisible();

@@ -103,8 +103,8 @@ function CauseCard({ session, cause, named }: { session: EvidenceSession; cause:
         aria-controls={id}
         onClick={() => (open.value = !open.value)}
       >
-        <small class="fault-of">{faultTitles[cause.faultOf]}</small>
         <strong>{cause.label}</strong>
+        <small class="fault-of">{faultTitles[cause.faultOf]}</small>
         <span class="cause-line">
           <span>
             <Icon name={open.value ? 'chevronDown' : 'chevronRight'} small /> Strength

@@ -3,11 +3,13 @@
 """How much the thickness of a formed sheet depends on the simulation, and on the causes of a diagnosis: 3,000 places spread
 over the sheet, differences from 5,000 triangles without any cause, as shares of the sheet's thickness (1 mm).
 
-  thickness_misfit.py build/formwright [pyramid hemisphere t_shape]"""
+  thickness_misfit.py build/formwright [--network-share 0.1] [pyramid hemisphere t_shape]
+
+--network-share is that of every simulation."""
+import argparse
 import csv
 import math
 import subprocess
-import sys
 import tempfile
 from pathlib import Path
 
@@ -31,7 +33,13 @@ def thickness(program, mould, changed):
 
 
 def main():
-    program, moulds = sys.argv[1], sys.argv[2:] or ["pyramid", "hemisphere", "t_shape"]
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("program")
+    parser.add_argument("moulds", nargs="*")
+    parser.add_argument("--network-share", type=float, default=0)
+    options = parser.parse_args()
+    program, moulds = options.program, options.moulds or ["pyramid", "hemisphere", "t_shape"]
+    USUAL["network_share"] = options.network_share
     print("| change | " + " | ".join(moulds) + " |\n|---|" + "---:|" * len(moulds))
     usual = {mould: thickness(program, mould, {}) for mould in moulds}
     for name, changed in {**SIMULATIONS, **CAUSES}.items():

@@ -12,7 +12,7 @@ export interface Estimate {
 }
 
 /** Whose a cause is: what the maker does or has; how it was measured; what the simulation leaves out. */
-export type FaultOf = 'machine' | 'measurement' | 'simulation';
+type FaultOf = 'machine' | 'measurement' | 'simulation';
 
 export interface Cause {
   readonly name: string;

@@ -80,8 +80,9 @@ void Membrane::begin_step(const Positions& x, const HeldVertices& held) {
     // has been drawn out that far hardens. So the stiffness stays that of the thickness at which the flow stops.
     g.weight = rest_area * maximum(thickness, Double4{} + material_.flow_stop_mm) * (g.stiffness * g.chill);
     // The network's state without stress is the flat sheet, and a chill does not stiffen it.
-    g.network_weight = 0.5 / (g.flat00 * g.flat11 - g.flat01 * g.flat10) *
-                       maximum(thickness, Double4{} + material_.flow_stop_mm) * g.stiffness;
+    if (material_.network_share > 0)
+      g.network_weight = 0.5 / (g.flat00 * g.flat11 - g.flat01 * g.flat10) *
+                         maximum(thickness, Double4{} + material_.flow_stop_mm) * g.stiffness;
     g.creep = material_.creep_per_s / g.chill;
     if (material_.yield_rule == YieldRule::total_strain) {
       deform(g, x, true, total);

@@ -111,9 +111,9 @@ const std::vector<CauseTable>& cause_table() {
         {"scan_shift_z_mm", false, -10, 10, 1, 0.7}},
        FaultOf::measurement},
       {"lasting_network",
-       "Plastic that never flows",
+       "Plastic pulls back like rubber",
        "Part of the hot plastic never flows: the more it is drawn, the more it pulls, and steep walls stay thicker than the simulation has them.",
-       "Nothing at the machine: simulate and print with this profile, whose network_share keeps that part. It takes no more time.",
+       "Nothing at the machine: simulate and print with this profile, whose network_share keeps that part. A simulation takes up to a third longer.",
        {{"network_share", false, 0, 0.6, 0.1, 0.05}},
        FaultOf::simulation}};
   return table;

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // End-point error and seconds of variational_flow on pairs with known displacement.
-//   bench_flow [--side PX] [--write DIR] [NAME=VALUE ...]     options of the flow by name
+//   bench_flow [--side PX] [--holes N] [--write DIR] [NAME=VALUE ...]     options of the flow by name
+// --holes takes N round holes out of each second picture; errors count the pixels in them too.
 // --write leaves the pairs and their true flow for compare_opencv.py.
 #include <cstdio>
 #include <cstring>
 #include <ctime>
 #include <fstream>
+#include <random>
 #include <string>
 
 #include "imaging/picture/png_writer.h"
@@ -23,6 +25,20 @@ Image bytes_of(const WeightedPicture& picture) {
   return image;
 }
 
+/// Round holes of a fortieth of the picture's width in radius, at random places: no weight, and a colour that would
+/// mislead whoever read it.
+void make_holes(Image& picture, int count) {
+  std::mt19937 random(7);
+  const double radius = picture.width / 40.0;
+  for (int i = 0; i < count; ++i) {
+    const Vec2 middle(random() % static_cast<unsigned>(picture.width),
+                      random() % static_cast<unsigned>(picture.height));
+    for (int y = 0; y < picture.height; ++y)
+      for (int x = 0; x < picture.width; ++x)
+        if ((Vec2(x, y) - middle).norm() < radius) picture.at(x, y) = {255, 0, 255, 0};
+  }
+}
+
 void save(const std::string& path, const void* data, std::size_t size) {
   std::ofstream(path, std::ios::binary).write(static_cast<const char*>(data), static_cast<std::streamsize>(size));
 }
@@ -30,11 +46,12 @@ void save(const std::string& path, const void* data, std::size_t size) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  int side = 2048;
+  int side = 2048, holes = 0;
   std::string folder;
   Json values = Json::object();
   for (int i = 1; i < argc; ++i) {
     if (std::strcmp(argv[i], "--side") == 0 && i + 1 < argc) side = std::stoi(argv[++i]);
+    else if (std::strcmp(argv[i], "--holes") == 0 && i + 1 < argc) holes = std::stoi(argv[++i]);
     else if (std::strcmp(argv[i], "--write") == 0 && i + 1 < argc) folder = argv[++i];
     else if (const char* equal = std::strchr(argv[i], '='))
       values[std::string(argv[i], static_cast<std::size_t>(equal - argv[i]))] = std::stod(equal + 1);
@@ -58,7 +75,9 @@ int main(int argc, char** argv) {
   Json result = Json::array();
   for (const Case& c : cases) {
     test::WarpedPair pair = test::warped_pair(side, side, c.back, c.camera);
-    const Image first = bytes_of(pair.first), second = bytes_of(pair.second);
+    const Image first = bytes_of(pair.first);
+    Image second = bytes_of(pair.second);
+    make_holes(second, holes);
     Context context;
     const WeightedPicture a = weighted_picture(first), b = weighted_picture(second);
     const Stopwatch watch;
@@ -70,6 +89,7 @@ int main(int argc, char** argv) {
     const test::EndPointError e = test::end_point_error(flow, pair.truth, margin);
     result.push_back({{"pair", c.name},
                       {"side_px", side},
+                      {"holes", holes},
                       {"seconds", seconds},
                       {"processor_seconds", processor_seconds},
                       {"error_mean_px", e.mean},

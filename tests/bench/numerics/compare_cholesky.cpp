@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// compare_cholesky MATRIX METHOD [rounds]: one factorisation of one matrix (cholesky_methods.h) on one thread, as a
-// line of JSON. One run a method, so that the peak of the memory is that method's own.
+// compare_cholesky MATRIX METHOD [rounds [threads]]: one factorisation of one matrix (cholesky_methods.h), as a line of
+// JSON. On one thread in processor time, on several in wall-clock time. One run a method, so that the peak of the
+// memory is that method's own.
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
@@ -24,14 +25,16 @@
 namespace {
 using namespace formwright;
 
-/// Processor time, which other programs do not lengthen; in WebAssembly there is wall-clock time only.
-double seconds_now() {
-  timespec now{};
 #ifdef __EMSCRIPTEN__
-  clock_gettime(CLOCK_MONOTONIC, &now);
+constexpr bool has_processor_time = false;
 #else
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+constexpr bool has_processor_time = true;
 #endif
+
+/// Processor time, which other programs do not lengthen, where one thread works alone; else wall-clock time.
+double seconds_now(int threads) {
+  timespec now{};
+  clock_gettime(has_processor_time && threads == 1 ? CLOCK_PROCESS_CPUTIME_ID : CLOCK_MONOTONIC, &now);
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
@@ -47,12 +50,12 @@ double peak_memory_mb() {
 }
 
 template <class Work>
-double shortest_run_seconds(int rounds, const Work& work) {
+double shortest_run_seconds(int rounds, int threads, const Work& work) {
   double minimum = std::numeric_limits<double>::infinity();
   for (int k = 0; k < rounds; ++k) {
-    const double before = seconds_now();
+    const double before = seconds_now(threads);
     work();
-    minimum = std::min(minimum, seconds_now() - before);
+    minimum = std::min(minimum, seconds_now(threads) - before);
   }
   return minimum;
 }
@@ -71,13 +74,15 @@ double backward_error(const SparseMatrix& lower, const Eigen::VectorXd& x, const
 int main(int argc, char** argv) {
   const auto method = argc > 2 ? bench::cholesky_method(argv[2]) : nullptr;
   if (!method) {
-    std::fprintf(stderr,
-                 "compare_cholesky MATRIX ours|eigen-amd|eigen-ours|cholmod-amd|cholmod-metis|cholmod-ours [rounds]\n");
+    std::fprintf(
+        stderr,
+        "compare_cholesky MATRIX ours|eigen-amd|eigen-ours|cholmod-amd|cholmod-metis|cholmod-ours [rounds [threads]]\n");
     return 2;
   }
   try {
     const int rounds = argc > 3 ? std::stoi(argv[3]) : 3;
-    const ThreadLimit one(1);
+    const int threads = argc > 4 ? std::stoi(argv[4]) : 1;
+    const ThreadLimit limit(threads);
     const SparseMatrix lower = bench::read_matrix(argv[1]);
     std::mt19937 random(1);
     Eigen::VectorXd b(lower.rows());
@@ -85,9 +90,10 @@ int main(int argc, char** argv) {
     const double memory_before = peak_memory_mb();
     Json report{{"method", argv[2]}, {"unknowns", lower.rows()}, {"entries", lower.nonZeros()}};
     Eigen::VectorXd x;
-    report["seconds_analyze"] = shortest_run_seconds(1, [&] { method->analyze(lower); });
-    report["seconds_factorize"] = shortest_run_seconds(rounds, [&] { method->factorize(lower); });
-    report["seconds_solve"] = shortest_run_seconds(rounds, [&] { x = method->solve(b); });
+    report["seconds_analyze"] =
+        shortest_run_seconds(threads == 1 ? 1 : rounds, threads, [&] { method->analyze(lower); });
+    report["seconds_factorize"] = shortest_run_seconds(rounds, threads, [&] { method->factorize(lower); });
+    report["seconds_solve"] = shortest_run_seconds(rounds, threads, [&] { x = method->solve(b); });
     report["peak_memory_mb"] = peak_memory_mb() - memory_before;
     report["factor_entries"] = method->stored_entries();
     report["backward_error"] = backward_error(lower, x, b);

@@ -53,11 +53,19 @@ export const evidence: Tutorial = {
     room.press(
       'Press **Uneven heating, side to side**. It says how strong the cause is and what to do about it.',
       button('Uneven heating, side to side'),
+      [],
+      { picture: { name: 'evidence_cause', alt: 'The cause found, its strength and what to do' } },
     ),
     room.press(
       'Switch **Show the simulation with this cause included** on. The last map becomes paler: less is unexplained.',
       toggle('Show the simulation with this cause included'),
       [{ shown: picture('Distances between measured and simulated, with the cause') }],
+      {
+        picture: {
+          name: 'evidence_gain',
+          alt: 'The maps with the cause included, and how far the error falls',
+        },
+      },
     ),
     room.press(
       'Press **Use in the next print**. From now on this project forms sheets on this machine, fault included.',
@@ -71,6 +79,7 @@ export const evidence: Tutorial = {
       'Choose the sample **Pyramid**. Above its settings the panel names the machine it is formed on.',
       button('Pyramid'),
       [{ strip: 'Preview up to date' }, { shown: button('Form without the machine profile') }],
+      { picture: { name: 'evidence_next_print', alt: 'The pyramid, formed on the diagnosed machine' } },
     ),
     forming.look(
       'You are done. Prints exported here put every colour where this machine needs it. The cross at its name goes back.',

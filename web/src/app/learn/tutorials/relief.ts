@@ -37,6 +37,13 @@ export const relief: Tutorial = {
     room.press(
       'Choose **Shading difference** above the picture. Pale places are shaded like the model, dark places look flatter.',
       radio('Shading difference'),
+      [],
+      {
+        picture: {
+          name: 'relief_difference',
+          alt: 'The relief, dark where its shading differs from the model',
+        },
+      },
     ),
     room.press(
       'Press **Solve at full detail**. The file is ready when **Relief ready** stands at the foot of the page.',
@@ -46,6 +53,8 @@ export const relief: Tutorial = {
     room.press(
       'Choose **Relief** above the picture and turn it by dragging, to see how thin it is.',
       exactly(radio('Relief')),
+      [],
+      { picture: { name: 'relief_ready', alt: 'The finished relief on its plate' } },
     ),
     room.press(
       'Press **Export STL**. The file is a closed solid with a flat back, in millimetres.',

@@ -42,6 +42,12 @@ export const zippable: Tutorial = {
       'Press **Will it zip? Simulate cloth**. The sentence that appears says whether cloth takes this shape.',
       button('Will it zip? Simulate cloth'),
       [{ shown: radio('Simulated cloth') }],
+      {
+        picture: {
+          name: 'zippable_cloth',
+          alt: 'The zipped star as simulated cloth, with the verdict below it',
+        },
+      },
     ),
     room.press(
       'Choose **Sheets to cut**: the ribbon in pieces that fit the bed of a laser cutter.',
@@ -53,6 +59,7 @@ export const zippable: Tutorial = {
       field('Sheet depth'),
       '350',
       [{ shown: button('Send to a machine') }],
+      { picture: { name: 'zippable_sheets', alt: 'The pieces of the ribbon on sheets 400 mm wide' } },
     ),
     room.press(
       'Press **Export plan, SVG**. Red is cut, blue is marked, and the numbers say which edges meet.',

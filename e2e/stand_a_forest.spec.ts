@@ -75,6 +75,23 @@ test('four models on one forest: moved, made, looked at and kept', async ({ page
   await expect.poll(() => colours(page), { timeout: 60_000 }).not.toBe(moved);
   await page.mouse.up();
   await upToDate(page);
+
+  // Beside the plan, what an eye sees of it: whatever moves in the plan moves there, too.
+  const seen = page.getByRole('img', { name: /^Bust and the pillars, seen from viewpoint 1$/ });
+  await expect(seen).toBeVisible();
+  await expect(seen.locator('image')).toHaveAttribute('href', /^blob:/);
+  const drawn = await seen.innerHTML();
+  await page.getByRole('button', { name: 'Seen from viewpoint 3' }).click();
+  await expect(page.getByRole('img', { name: /^Cat and the pillars, seen from viewpoint 3$/ })).toBeVisible();
+  await eye(page, 1).focus();
+  await expect(seen).toBeVisible();
+  await page.keyboard.press('Shift+ArrowLeft');
+  await expect.poll(() => seen.innerHTML(), { timeout: 60_000 }).not.toBe(drawn);
+  await page.getByRole('button', { name: 'Show what an eye sees' }).click();
+  await expect(seen).toBeHidden();
+  await page.getByRole('button', { name: 'Show what an eye sees' }).click();
+  await expect(seen).toBeVisible();
+  await upToDate(page);
   await expectAccessible(page, 'the floor plan of a forest');
 
   await page.getByRole('button', { name: 'Make the forest' }).click();
@@ -206,6 +223,12 @@ test('on a phone a pillar is dragged and the list lies below', async ({ page }) 
   await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2 + 20, { steps: 3 });
   await page.mouse.up();
   await expect(pillar(page, 9)).not.toHaveAttribute('aria-label', before ?? '');
+  const seen = page.getByRole('img', { name: /^Bust and the pillars, seen from viewpoint 1$/ });
+  await expect(seen).toBeHidden();
+  await page.getByRole('button', { name: 'Show what an eye sees' }).click();
+  const [above, below] = [await plan(page).boundingBox(), await seen.boundingBox()];
+  expect((above?.y ?? 0) + (above?.height ?? 999)).toBeLessThanOrEqual(below?.y ?? 0);
+  await page.getByRole('button', { name: 'Show what an eye sees' }).click();
   await page.getByRole('button', { name: 'Make this panel taller' }).click();
   await expect(page.getByRole('region', { name: 'Pillar 9' })).toBeVisible();
 });

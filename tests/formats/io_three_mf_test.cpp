@@ -1,45 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <catch2/catch_test_macros.hpp>
 #include <catch2/matchers/catch_matchers_floating_point.hpp>
 
-#include "formats/three_mf/three_mf.h"
-#include "formats/shared/byte_order.h"
-#include "formats/shared/colour.h"
 #include "formats/io_test_tools.h"
 #include "formats/model_samples.h"
-#include "formats/container/xml_reader.h"
+#include "formats/shared/colour.h"
+#include "formats/three_mf/three_mf.h"
+#include "formats/three_mf_parts.h"
 
 namespace formwright {
 namespace {
 using Catch::Matchers::WithinULP;
 using namespace test;
-
-constexpr std::string_view relationships =
-    R"(<?xml version="1.0"?><Relationships xmlns="x"><Relationship Target="/3D/3dmodel.model" Id="r" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>)";
-constexpr std::string_view triangle_mesh =
-    R"(<mesh><vertices><vertex x="0" y="0" z="0"/><vertex x="1" y="0" z="0"/><vertex x="0" y="2" z="0"/></vertices>
-<triangles><triangle v1="0" v2="1" v3="2"/></triangles></mesh>)";
-
-Bytes package(const std::string& model, const std::vector<std::pair<std::string, std::string>>& more = {}) {
-  ZipWriter zip;
-  const Context context;
-  zip.add("_rels/.rels", relationships, context);
-  zip.add("3D/3dmodel.model", model, context);
-  for (const auto& [name, text] : more) zip.add(name, text, context);
-  return zip.finish();
-}
-
-std::string model_of(const std::string& resources, const std::string& build, const std::string& attributes = "") {
-  return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<!-- a comment with <tags> -->\n<model " + attributes +
-         " xmlns=\"c\"><resources>\n" + resources + "\n</resources>\n<build>" + build + "</build></model>";
-}
-
-Model read_parts(const std::string& resources, const std::string& build, const std::string& attributes = "") {
-  return read_bytes(package(model_of(resources, build, attributes)), "a.3mf").model;
-}
-
-std::string object(int id, const std::string& inside, const std::string& attributes = "") {
-  return "<object id=\"" + std::to_string(id) + "\" " + attributes + ">" + inside + "</object>";
-}
 
 TEST_CASE("ThreeMf.GroupsAsObjectsOfTheirOwn") {
   Model model;
@@ -279,144 +251,6 @@ TEST_CASE("ThreeMf.LimitsHold") {
   options.max_triangles = 1;
   const std::string two = object(1, std::string(triangle_mesh)), twice = "<item objectid=\"1\"/><item objectid=\"1\"/>";
   expect_refused(package(model_of(two, twice)), "large.3mf", "it holds 2 triangles, and at most 1 is read", options);
-}
-
-TEST_CASE("Zip.DamagedArchivesAreRefused") {
-  const Bytes good = package(model_of(object(1, std::string(triangle_mesh)), "<item objectid=\"1\"/>"));
-  CHECK(read_bytes(good, "a.3mf").model.mesh.face_count() == 1);
-  for (const std::size_t size : {30u, 200u})
-    expect_refused(ByteView(good).first(size), "cut.3mf", "zip archive ends too early");
-  expect_refused(to_bytes("PK\x03\x04"), "cut.3mf", "ends too early");
-  Bytes flipped = good;
-  flipped[good.size() / 2] ^= std::byte{0xff};
-  expect_refused(flipped, "flipped.3mf", "is damaged");
-  ZipWriter zip;
-  zip.add("readme.txt", "nothing", Context());
-  expect_refused(zip.finish(), "other.3mf", "this zip archive holds no 3MF model");
-  // Encrypted, or packed by a method other than deflate: flags and method in the directory's entries.
-  for (const auto& [place, value, part] :
-       {std::tuple{8u, 1u, "is encrypted"}, std::tuple{10u, 14u, "packed in an unusual way"}}) {
-    Bytes marked = good;
-    for (std::size_t i = 0; i + 4 < marked.size(); ++i)
-      if (load<std::uint32_t>(marked.data() + i) == 0x02014b50)
-        store(marked.data() + i + place, static_cast<std::uint16_t>(value));
-    expect_refused(marked, "marked.3mf", part);
-  }
-}
-
-TEST_CASE("Zip.CommentsAndZip64AreRead") {
-  Bytes bytes = package(model_of(object(1, std::string(triangle_mesh)), "<item objectid=\"1\"/>"));
-  const std::size_t end = bytes.size() - 22;
-  // Move directory offset and entry count into a Zip64 end record, as some writers do for any size.
-  const std::uint64_t count = load<std::uint16_t>(bytes.data() + end + 10),
-                      directory = load<std::uint32_t>(bytes.data() + end + 16), size = end - directory;
-  bytes.resize(end);
-  const std::uint64_t end64 = bytes.size();
-  append(bytes, 0x06064b50u), append(bytes, std::uint64_t{44}), append(bytes, std::uint16_t{45}),
-      append(bytes, std::uint16_t{45}), append(bytes, 0u), append(bytes, 0u);
-  append(bytes, count), append(bytes, count), append(bytes, size), append(bytes, directory);
-  append(bytes, 0x07064b50u), append(bytes, 0u), append(bytes, end64), append(bytes, 1u);
-  append(bytes, 0x06054b50u), append(bytes, 0u), append(bytes, std::uint16_t{0xFFFF}),
-      append(bytes, std::uint16_t{0xFFFF}), append(bytes, static_cast<std::uint32_t>(size)), append(bytes, 0xFFFFFFFFu);
-  append(bytes, std::uint16_t{7});
-  for (const char c : std::string_view("comment")) bytes.push_back(static_cast<std::byte>(c));
-  CHECK(read_bytes(bytes, "a.3mf").model.mesh.face_count() == 1);
-}
-
-TEST_CASE("Xml.EntitiesCommentsAndCdata") {
-  const ReadOptions options;
-  Context context;
-  const std::string_view text =
-      "<?xml version='1.0'?><!-- <x> --><a:root one='1 &lt;&#x41;&#66;&amp;amp;' b:two = \"'\"><![CDATA[</root>]]><leaf/></a:root> junk";
-  const MeshSource source(as_bytes(text), "x.xml", options, context);
-  XmlReader xml(source);
-  REQUIRE(xml.next());
-  CHECK(xml.name() == "root");
-  CHECK(xml.text_attribute("one") == "1 <AB&amp;");
-  CHECK(xml.attribute("two") == "'");
-  REQUIRE(xml.next());
-  CHECK(xml.name() == "leaf");
-  REQUIRE(xml.next());
-  CHECK(xml.tag() == XmlReader::Tag::end);
-  REQUIRE(xml.next());
-  CHECK(xml.name() == "root");
-  CHECK_FALSE(xml.next());
-}
-
-/// Reads all of it: "<a k='v'><b></b></a>" gives "a(k=v) b() /b /a ".
-std::string tags_of(std::string_view text) {
-  const ReadOptions options;
-  Context context;
-  const MeshSource source(as_bytes(text), "x.xml", options, context);
-  std::string tags;
-  for (XmlReader xml(source); xml.next();)
-    tags += xml.tag() == XmlReader::Tag::end ? "/" + std::string(xml.name()) + " "
-                                             : std::string(xml.name()) + "(" + std::string(xml.attribute("k")) + ")" +
-                                                   std::to_string(xml.depth()) + " ";
-  return tags;
-}
-
-void expect_no_xml(std::string_view text, const std::string& message) {
-  INFO(message);
-  try {
-    tags_of(text);
-    FAIL("It was read.");
-  } catch (const Error& error) {
-    CHECK(std::string(error.what()).find(message) != std::string::npos);
-  }
-}
-
-TEST_CASE("Xml.TagsAtEveryPlaceInAPiece") {
-  CHECK(tags_of("<a k='v'><b><c/></b><d></d></a>") == "a(v)1 b()2 c()3 /c /b d()2 /d /a ");
-  CHECK(tags_of("<a/>") == "a()1 /a ");
-  // Whatever lies at the end of a piece of 64 kB: a tag of several bytes moves over it, one byte at a time.
-  for (std::size_t before = (64 << 10) - 20; before < (64 << 10) + 2; ++before) {
-    const std::string text = "<a>" + std::string(before - 3, ' ') + "<b k='&lt;ä'/></a>";
-    CHECK(tags_of(text) == "a()1 b(<ä)2 /b /a ");
-  }
-  const std::string long_value(200'000, 'x');
-  CHECK(tags_of("<a><b k='" + long_value + "'/><c/></a>") == "a()1 b(" + long_value + ")2 /b c()2 /c /a ");
-}
-
-TEST_CASE("Xml.EncodingsAreThoseThatFilesDeclare") {
-  CHECK(tags_of("<?xml version='1.0' encoding='ISO-8859-1'?><a k='\xe4'/>") == "a(ä)1 /a ");
-  CHECK(tags_of("\xef\xbb\xbf<a k='ä'/>") == "a(ä)1 /a ");
-  expect_no_xml("<?xml version='1.0' encoding='EBCDIC'?><a/>",
-                "line 1: its XML is in an unusual encoding; export it in UTF-8.");
-  expect_no_xml("<a k='\xe4'/>", "its XML is damaged");
-}
-
-TEST_CASE("Xml.WhatIsNotWellFormedIsRefusedWithItsLine") {
-  expect_no_xml("<a>\n<b>\n</c></a>", "x.xml, line 3: the end of “c” does not match its beginning");
-  expect_no_xml("<a>\n<b k=v/></a>", "x.xml, line 2: its XML is damaged; export it or copy it again.");
-  expect_no_xml("<a k='1' k='2'/>", "x.xml, line 1: its XML is damaged");
-  expect_no_xml("<a>&unknown;</a>", "its XML is damaged");
-  expect_no_xml("<a>\n<b>", "x.xml: its XML ends too early; export it or copy it again.");
-  expect_no_xml("<a><![CDATA[ x", "x.xml: its XML ends too early");
-  expect_no_xml("<!DOCTYPE a [\n<!ENTITY b 'bbbb'>\n<!ENTITY c '&b;&b;&b;'>]><a>&c;</a>",
-                "x.xml, line 1: its XML has a document type, which 3MF forbids");
-}
-
-TEST_CASE("Xml.LimitsHold") {
-  std::string deep, wide = "<a";
-  for (int i = 0; i < 256; ++i) deep += "<a>", wide += " k" + std::to_string(i) + "='1'";
-  std::string closed = deep;
-  for (int i = 0; i < 256; ++i) closed += "</a>";
-  CHECK(tags_of(closed).ends_with("a()256 " + tags_of(closed).substr(tags_of(closed).find("/a"))));
-  expect_no_xml(deep + "<a>", "its XML is nested more than 256 deep; export it again.");
-  CHECK(tags_of(wide + "/>") == "a()1 /a ");
-  expect_no_xml(wide + " k='1'/>", "a tag has more than 256 attributes; export it again.");
-  expect_no_xml("<a>\n<b k='" + std::string(600'000, 'x') + "'/></a>",
-                "x.xml, line 2: one of its tags is longer than 256 kB; export it again.");
-  // Text and comments may be longer.
-  CHECK(tags_of("<a>" + std::string(2'000'000, 'x') + "</a>") == "a()1 /a ");
-  for (std::size_t bytes = 600'000; bytes < 600'010; ++bytes) {
-    const std::string comment = "<!--" + std::string(bytes, '\n') + "\xc3\xa4-->";
-    CHECK(tags_of(comment + "<a>" + comment + "<b/></a>" + comment) == "a()1 b()2 /b /a ");
-    expect_no_xml(comment + "<a>" + comment + "<b></a>",
-                  "x.xml, line " + std::to_string(2 * bytes + 1) + ": the end of “a”");
-  }
-  expect_no_xml("<a><!--" + std::string(600'000, 'x') + "--", "x.xml: its XML ends too early");
 }
 
 }  // namespace

@@ -119,6 +119,20 @@ TEST_CASE("ReliefForest.AllFilesOfAScene") {
   CHECK(count(dxf, "\nPOLYLINE\n") > 8);
 }
 
+TEST_CASE("ReliefForest.ModelsAreSeenWithoutSolving") {
+  const JobResult result = run(with_scene(scene()), Json::object(), {"models.zip", "plan.json"});
+  REQUIRE_FALSE(result.error.has_value());
+  CHECK(result.report["seconds_solve"] == 0);
+  Context context;
+  const ReadOptions options;
+  const MeshSource source(output(result, "models.zip"), "models.zip", options, context);
+  ZipArchive archive(source);
+  REQUIRE(archive.entries().size() == 2);
+  CHECK(archive.entries()[0].name == "model_1.png");
+  CHECK(archive.entries()[1].name == "model_2.png");
+  CHECK(archive.read(archive.entries()[0], 1'000'000) != archive.read(archive.entries()[1], 1'000'000));
+}
+
 TEST_CASE("ReliefForest.AWrittenSceneGivesTheSamePillars") {
   const JobResult first = run({}, {{"layout", "screens"}, {"seed", 3}}, {"scene.json", "floor_plan.svg"});
   REQUIRE_FALSE(first.error.has_value());

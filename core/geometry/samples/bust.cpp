@@ -3,6 +3,7 @@
 // y up from the chin, z forward from the ears; proportions after the usual anthropometric means.
 #include <algorithm>
 
+#include "geometry/samples/remeshing/mesh_implicit.h"
 #include "geometry/samples/sculpting/locks.h"
 #include "geometry/samples/sculpting/noise.h"
 #include "geometry/samples/shapes.h"

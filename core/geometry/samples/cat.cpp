@@ -2,10 +2,11 @@
 // A sitting tabby cat at life size in centimetres. Legs and tail lie close to the body: no holes.
 #include <algorithm>
 
+#include "geometry/samples/remeshing/mesh_implicit.h"
 #include "geometry/samples/sculpting/locks.h"
 #include "geometry/samples/sculpting/noise.h"
 #include "geometry/samples/shapes.h"
-#include "geometry/samples/texture_atlas.h"
+#include "geometry/samples/texture_painting.h"
 
 namespace formwright::samples {
 namespace {

@@ -2,6 +2,7 @@
 // A medal after the owls of Athens: fine, flat detail on both faces. Millimetres, front towards +z.
 #include <algorithm>
 
+#include "geometry/samples/remeshing/mesh_implicit.h"
 #include "geometry/samples/sculpting/locks.h"
 #include "geometry/samples/shapes.h"
 

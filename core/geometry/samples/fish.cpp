@@ -2,6 +2,7 @@
 // A fish seen from its left side: scales in overlapping rows, rayed fins. Millimetres; head at +x.
 #include <algorithm>
 
+#include "geometry/samples/remeshing/mesh_implicit.h"
 #include "geometry/samples/sculpting/noise.h"
 #include "geometry/samples/shapes.h"
 

@@ -6,7 +6,7 @@
 #include "geometry/samples/sculpting/erosion.h"
 #include "geometry/samples/sculpting/noise.h"
 #include "geometry/samples/shapes.h"
-#include "geometry/samples/texture_atlas.h"
+#include "geometry/samples/texture_painting.h"
 
 namespace formwright::samples {
 namespace {

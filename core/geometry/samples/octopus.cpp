@@ -2,6 +2,7 @@
 // An octopus at rest, in units of 0.78 mm: mantle leaning back, eight arms curling over the ground.
 #include <algorithm>
 
+#include "geometry/samples/remeshing/mesh_implicit.h"
 #include "geometry/samples/sculpting/noise.h"
 #include "geometry/samples/shapes.h"
 

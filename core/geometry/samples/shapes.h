@@ -3,7 +3,7 @@
 // The makers behind make_sample, one per shape.
 #include <functional>
 
-#include "geometry/samples/sculpting/remesh.h"
+#include "geometry/samples/remeshing/remesh.h"
 #include "geometry/mesh/triangle_mesh.h"
 
 namespace formwright::samples {

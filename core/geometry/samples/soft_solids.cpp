@@ -3,6 +3,7 @@
 // a chain of smooth minima, which depends on the order.
 #include <array>
 
+#include "geometry/samples/remeshing/mesh_implicit.h"
 #include "geometry/samples/sculpting/noise.h"
 #include "geometry/samples/shapes.h"
 

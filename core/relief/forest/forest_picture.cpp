@@ -8,6 +8,7 @@
 
 #include "base/parallel.h"
 #include "imaging/picture/light.h"
+#include "relief/seen/normal_picture.h"
 
 namespace formwright {
 namespace {
@@ -17,6 +18,15 @@ constexpr double picture_height_share = 0.8, more_than_model = 1.35;
 constexpr double ambient = 0.12, matt = 0.75, floor_brightness = 0.86, sky_brightness = 1;
 constexpr std::size_t picture_lines_a_chunk = 4;
 constexpr double horizon_mm = 1e7;
+
+/// Where light comes from: right, up and towards the viewer.
+Vec3 light_direction() { return Vec3(-0.55, 0.6, 0.58).normalized(); }
+
+/// sRGB grey of what is lit at this cosine.
+std::uint8_t grey_of(double brightness) {
+  return byte_of_light()[static_cast<std::size_t>(std::lround(std::clamp(brightness, 0.0, 1.0) * light_levels))];
+}
+double matt_brightness(double cosine) { return ambient + matt * std::max(0.0, cosine); }
 
 /// Right, up and looking direction.
 Eigen::Matrix3d camera_axes(const ForestCamera& camera) {
@@ -76,7 +86,7 @@ Image picture_of_forest(const StandingForest& forest, const RayCaster& caster, c
   Image image(width, height, Rgba{255, 255, 255, 255});
   const Eigen::Matrix3d axes = camera_axes(camera);
   const double distance = (camera.look_at_mm - camera.eye_mm).norm(), pitch = camera.width_mm / width;
-  const Vec3 light = axes.transpose() * Vec3(-0.55, 0.6, -0.58).normalized();
+  const Vec3 light = axes.transpose() * light_direction().cwiseProduct(Vec3(1, 1, -1));
   parallel_for(static_cast<std::size_t>(height), picture_lines_a_chunk, [&](std::size_t begin, std::size_t end) {
     context.check_cancelled();
     for (std::size_t line = begin; line < end; ++line)
@@ -91,16 +101,34 @@ Image picture_of_forest(const StandingForest& forest, const RayCaster& caster, c
           const Vec3 a = forest.mesh.V.row(forest.mesh.F(hit->face, 0)),
                      b = forest.mesh.V.row(forest.mesh.F(hit->face, 1)),
                      c = forest.mesh.V.row(forest.mesh.F(hit->face, 2));
-          brightness = ambient + matt * std::max(0.0, (b - a).cross(c - a).normalized().dot(light));
+          brightness = matt_brightness((b - a).cross(c - a).normalized().dot(light));
         } else if (std::isfinite(floor) && floor > 0) {
           brightness = floor_brightness;
         }
-        const std::uint8_t grey =
-            byte_of_light()[static_cast<std::size_t>(std::lround(std::clamp(brightness, 0.0, 1.0) * light_levels))];
+        const std::uint8_t grey = grey_of(brightness);
         image.at(column, static_cast<int>(line)) = {grey, grey, grey, 255};
       }
   });
   return shrunk(image, rays_a_side, context);
+}
+
+Image picture_of_model(const ViewFrame& frame, const Triangles& F, int pixels, Context& context) {
+  PictureGrid grid;
+  grid.columns = pixels;
+  grid.pixel = 1.0 / pixels;
+  grid.rows = std::max(1, static_cast<int>(std::ceil(frame.image_height * pixels)));
+  const NormalPicture seen = draw_normals(frame, frame.P, F, grid, context);
+  const Vec3 light = light_direction();
+  Image image(grid.columns, grid.rows, Rgba{0, 0, 0, 0});
+  for (int row = 0; row < grid.rows; ++row)
+    for (int column = 0; column < grid.columns; ++column) {
+      const std::size_t at = seen.at(row, column);
+      if (!seen.covered[at]) continue;
+      const std::uint8_t grey =
+          grey_of(matt_brightness(light.dot(Vec3(seen.x[at], seen.y[at], seen.z[at]))));
+      image.at(column, grid.rows - 1 - row) = {grey, grey, grey, 255};
+    }
+  return image;
 }
 
 }  // namespace formwright

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// The finished forest as somebody sees it.
+// The finished forest as somebody sees it, and a model before a relief is made of it.
 #include <span>
 
 #include "imaging/picture/image.h"
 #include "relief/forest/forest.h"
+#include "relief/view/view_frame.h"
 
 namespace formwright {
 
@@ -24,5 +25,10 @@ ForestCamera camera_from_elsewhere(const ForestScene& scene);
 /// picture is `pixels` wide and four fifths as high. Throws Error: cancelled.
 Image picture_of_forest(const StandingForest& forest, const RayCaster& caster, const ForestCamera& camera, int pixels,
                         Context& context);
+
+/// The model of a viewpoint as its eye sees it, in the same light; transparent where nothing of it is seen. Its seen
+/// width is `pixels` wide, and the picture as high as the model, its middle the middle of what is looked at.
+/// `F`: triangles of the model that `frame` was made for. Throws Error: cancelled.
+Image picture_of_model(const ViewFrame& frame, const Triangles& F, int pixels, Context& context);
 
 }  // namespace formwright

@@ -14,25 +14,20 @@ import { isMill, ProfileStore } from '../../machines/profiles';
 import { listenForStop } from '../../machines/stop_keys';
 import { jsonEqual } from '../../project/document';
 import type { CraftResult, SolveRequest, Subject } from '../../shared/session/craft_document';
-import { nameProject, sameRequest } from '../../shared/session/craft_document';
+import { sameRequest } from '../../shared/session/craft_document';
 import type { Measured } from '../../shared/session/estimate';
 import { estimateSeconds, recall } from '../../shared/session/estimate';
 import { figure } from '../../shared/session/report';
 import type { Change } from '../../shared/session/room_session';
 import { RoomSession } from '../../shared/session/room_session';
 import { readyWorker, type Services } from '../../shared/session/services';
+import { JobStages } from './job_stages';
 import { isOfOther, isUntouched, laserSheet } from './laser_in_use';
 import type { FileWork, MachinesDocument } from './machines_document';
-import {
-  drawingEndings,
-  heightMapEnding,
-  jobEndings,
-  machines,
-  operationFor,
-  pictureSize,
-} from './machines_document';
+import { machines, operationFor } from './machines_document';
 import type { Plan, PlanRequest } from './make_plan';
 import { keyOf, planOfJob, planOfLaser, planOfResult, sourceOf } from './make_plan';
+import { openFiles, takeWork } from './open_work';
 
 /** What the controller reads; the others read G-code. */
 const jobFormats: Readonly<Record<string, string>> = { k40: 'job.egv', ruida: 'job.rd' };
@@ -60,13 +55,11 @@ export class MachinesSession extends RoomSession<MachinesDocument> {
     const request = this.#request();
     return request !== null && this.plan.value?.key === keyOf(request);
   });
-  /** The job that Start starts, of those that the plan has. */
-  readonly stage = signal(0);
-  readonly job = computed(() => this.plan.value?.jobs[this.stage.value] ?? null);
-  /** Names the plan and the job of it that the machine holds. */
-  readonly jobKey = computed(() => this.keyOfJob(this.stage.value));
-  /** How often z was set before the tool was changed: it must be set once more. */
-  #zSetsBefore = -1;
+  /** Which of the plan's jobs comes next. */
+  readonly #stages = new JobStages(this.plan, this.control);
+  readonly stage = this.#stages.stage;
+  readonly job = this.#stages.job;
+  readonly jobKey = this.#stages.jobKey;
   /** Where the controller counts from. */
   readonly origin = computed(() => asOrigin(this.value('origin')));
   /** The file that the controller reads. */
@@ -110,36 +103,15 @@ export class MachinesSession extends RoomSession<MachinesDocument> {
     super(services, machines);
     listenForStop(this.control);
     effect(() => this.follow());
-    effect(() => this.#followStages());
-  }
-
-  keyOfJob(stage: number): string | null {
-    const plan = this.plan.value;
-    return plan && (plan.jobs.length > 1 ? `${plan.key} job ${stage + 1}` : plan.key);
-  }
-
-  /** The next job waits for its tool once the one before it is done. */
-  #followStages(): void {
-    const { control } = this;
-    const jobs = this.plan.value?.jobs.length ?? 0;
-    const loaded = control.loaded.value;
-    const done = control.state.value?.job?.ended === 'done';
-    untracked(() => {
-      if (this.stage.value >= jobs) this.chooseStage(0);
-      if (done && loaded !== null && loaded === this.jobKey.value && this.stage.value + 1 < jobs)
-        this.chooseStage(this.stage.value + 1);
-    });
+    this.#stages.startFollowing();
   }
 
   chooseStage(stage: number): void {
-    if (stage === this.stage.value) return;
-    this.stage.value = stage;
-    this.#zSetsBefore = this.control.zSets.value;
+    this.#stages.choose(stage);
   }
 
-  /** A tool of another length stands where it is taken to stand only once z was set with it. */
   get needsZ(): boolean {
-    return (this.plan.value?.jobs.length ?? 0) > 1 && this.control.zSets.value <= this.#zSetsBefore;
+    return this.#stages.needsZ;
   }
 
   /** Nodes of the height field stand for the vertices of a mesh. */
@@ -260,89 +232,19 @@ export class MachinesSession extends RoomSession<MachinesDocument> {
     return isMill(this.profiles.current);
   }
 
-  /** Takes up one drawing, job, or what a mill carves; false where the file is none of these. */
-  async openFiles(files: readonly File[]): Promise<boolean> {
-    const [file] = files;
-    if (file === undefined) return false;
-    const name = file.name.toLowerCase();
-    const isOne = (endings: readonly string[]) => endings.some((ending) => name.endsWith(ending));
-    const formats = this.services.catalog.value?.mesh_formats ?? [];
-    const model = isOne([heightMapEnding, ...formats.map(({ extension }) => `.${extension}`)]);
-    const kind = isOne(jobEndings) ? 'job' : isOne(drawingEndings) ? 'drawing' : model ? 'model' : null;
-    if (kind === null) {
-      this.problem.value = {
-        kind: 'file',
-        title: `Could not open ${file.name}`,
-        message: `Machines take drawings (${drawingEndings.join(', ')}), jobs (${jobEndings.join(', ')}) and, for mills, models and height maps (${heightMapEnding}).`,
-      };
-      return false;
-    }
-    return await this.take(file.name, new Uint8Array(await file.arrayBuffer()), kind);
+  openFiles(files: readonly File[]): Promise<boolean> {
+    return openFiles(this, files);
   }
 
-  /** Drawings are work for lasers, models and height maps for mills: such a machine is chosen where the other kind was. A practice
-   *  machine is exchanged; where a real one is connected the work is not taken, and a message says so. `own`: what is known of it
-   *  beside its bytes, for the job and (`more`) for this room. */
-  async take(
+  /** Takes up one file (`takeWork`). `own`: what is known of it beside its bytes, for the job and (`more`) for this room. */
+  take(
     file_name: string,
     bytes: Uint8Array<ArrayBuffer>,
     kind: FileWork['kind'] = 'drawing',
     own: JsonObject = {},
     more: Pick<FileWork, 'of_plan'> = {},
   ): Promise<boolean> {
-    const change = this.changesHere();
-    const suits = kind === 'job' || (kind === 'model') === this.isMill;
-    const exchanged = !suits && this.control.practising.value && !this.control.isBusy;
-    const connected = this.control.link.value !== null;
-    if (!suits && connected && !exchanged) {
-      this.problem.value = {
-        kind: 'file',
-        title: `Could not open ${file_name}`,
-        message:
-          kind === 'model'
-            ? 'Models and height maps are for mills: disconnect the laser first, then open it again.'
-            : 'Drawings are for lasers: disconnect the mill first, then open it again.',
-      };
-      return false;
-    }
-    const picture = kind === 'model' ? pictureSize(bytes) : null;
-    const types = { job: 'text/x-gcode', drawing: 'image/svg+xml', model: 'application/octet-stream' };
-    const file = await this.keep(bytes, picture ? 'image/png' : types[kind]);
-    this.problem.value = null;
-    const nodes = picture ? { nodes: picture[0] * picture[1] } : {};
-    const catalog = await this.#catalogWhenThere();
-    if (catalog === null) {
-      const message = this.services.catalogError.peek() ?? '';
-      this.problem.value = { kind: 'file', title: `Could not open ${file_name}`, message };
-      return false;
-    }
-    const blank = this.services.projects.isBlank.value;
-    try {
-      this.#takeMachine(catalog, change);
-      change(
-        machines.setWork(catalog, { file_name, kind, file, ...nodes, ...more }, `Open ${file_name}`, own),
-      );
-    } catch (thrown) {
-      if (asJobError(thrown).code === 'cancelled') return false; // the person went on to another project
-      throw thrown;
-    }
-    if (!suits && connected) await this.control.disconnect();
-    if (!suits) this.useProfile(this.profiles.oneThat(kind === 'model'));
-    if (!suits && connected) await this.practise();
-    if (blank) change(nameProject(file_name.replace(/\.[^.]+$/, '')));
-    return true;
-  }
-
-  /** What is opened before the solver has told what it can do waits for that. Null: it never will. */
-  async #catalogWhenThere(): Promise<Catalog | null> {
-    const { catalog, catalogError } = this.services;
-    return await new Promise((resolve) => {
-      const stop = effect(() => {
-        if (catalog.value === null && catalogError.value === null) return;
-        resolve(catalog.value);
-        queueMicrotask(() => stop());
-      });
-    });
+    return takeWork(this, { file_name, bytes, kind, own, more });
   }
 
   // ---- tests of the material ----
@@ -352,7 +254,7 @@ export class MachinesSession extends RoomSession<MachinesDocument> {
     const { drawing } = this.document.value;
     if (catalog === null || drawing?.kind === 'test') return;
     const work = { file_name: 'Material test', kind: 'test', instead_of: drawing } as const;
-    this.#takeMachine(catalog, (command) => this.services.projects.do(command));
+    this.takeMachine(catalog, (command) => this.services.projects.do(command));
     this.services.projects.do(machines.setWork(catalog, work, 'Test the material'));
     this.problem.value = null;
   }
@@ -379,12 +281,12 @@ export class MachinesSession extends RoomSession<MachinesDocument> {
   override setParameters(values: JsonObject, label: string, coalesce?: string): void {
     const { catalog, projects } = this.services;
     if (catalog.value && isUntouched(this.document.value))
-      this.#takeMachine(catalog.value, (command) => projects.do(command));
+      this.takeMachine(catalog.value, (command) => projects.do(command));
     super.setParameters(values, label, coalesce);
   }
 
   /** New work is for the machine in use: its bed and speeds count where the project has none, or another machine's. */
-  #takeMachine(catalog: Catalog, change: Change): void {
+  takeMachine(catalog: Catalog, change: Change): void {
     const profile = this.profiles.current;
     const untouched = isUntouched(this.document.value);
     if (!untouched && !isOfOther(this.document.value, profile)) return;

@@ -16,6 +16,7 @@ namespace {
 constexpr double plan_margin_mm = 20, number_height_mm = 2.5, viewpoint_height_mm = 6;
 constexpr int hole_corners = 96;
 constexpr double seen_beyond = 1.5;  // of the distance of what is looked at
+constexpr int model_picture_pixels = 240;
 
 CutPath outline_path(CutLayer layer, const Outline& outline, const Vec2& origin, const std::string& name) {
   CutPath path{layer, {}, true, name};
@@ -169,6 +170,16 @@ Bytes picture_files(const ForestPlan& plan, const std::vector<Image>& pictures, 
         v == plan.views.size() ? "elsewhere"
                                : "viewpoint_" + std::to_string(v + 1) + "_" + file_word(plan.scene.viewpoints[v].model);
     zip.add_stored(name + ".png", write_png(pictures[v], 0, context));
+  }
+  return zip.finish();
+}
+
+Bytes model_picture_files(const std::vector<ViewFrame>& frames, const std::vector<const TriangleMesh*>& meshes,
+                          Context& context) {
+  ZipWriter zip;
+  for (std::size_t v = 0; v < frames.size(); ++v) {
+    const Image picture = picture_of_model(frames[v], meshes[v]->F, model_picture_pixels, context);
+    zip.add_stored("model_" + std::to_string(v + 1) + ".png", write_png(picture, 0, context));
   }
   return zip.finish();
 }

@@ -31,6 +31,11 @@ std::vector<Image> forest_pictures(const ForestPlan& plan, const SolvedForest& f
 /// "viewpoint_1_bust.png", ... and "elsewhere.png". Throws Error: cancelled.
 Bytes picture_files(const ForestPlan& plan, const std::vector<Image>& pictures, Context& context);
 
+/// "model_1.png", ...: each model as its viewpoint sees it. `frames` and `meshes`: of each viewpoint.
+/// Throws Error: cancelled.
+Bytes model_picture_files(const std::vector<ViewFrame>& frames, const std::vector<const TriangleMesh*>& meshes,
+                          Context& context);
+
 /// All pictures side by side, in rows.
 Image overview(const std::vector<Image>& pictures);
 

@@ -39,6 +39,8 @@ std::vector<OutputInfo> forest_outputs() {
        true},
       {"pictures.zip", "application/zip", "Pictures", "The forest as seen from each viewpoint and from elsewhere.",
        true},
+      {"models.zip", "application/zip", "Models from their viewpoints",
+       "Each model as its viewpoint sees it, before it is spread over the pillars. Nothing is solved for it.", false},
       {"overview.png", "image/png", "All pictures", "The same pictures side by side.", false},
       {"scene.json", "application/json", "Scene", "Viewpoints and pillars, to edit and to run again.", true},
       {"plan.json", "application/json", "Seen from above",
@@ -266,6 +268,11 @@ OperationResult run_relief_forest(const OperationCall& call, const ForestOptions
     add("pictures.zip", [&] { return picture_files(plan, pictures, context); });
     add("overview.png", [&] { return write_png(overview(pictures), 0, context); });
   }
+  add("models.zip", [&] {
+    std::vector<const TriangleMesh*> meshes;
+    for (const auto& loaded : input.models) meshes.push_back(&loaded->model.mesh);
+    return model_picture_files(frames, meshes, context);
+  });
   const auto json_bytes = [](const Json& json) {
     const std::string text = json.dump(1);
     const auto bytes = std::as_bytes(std::span(text));

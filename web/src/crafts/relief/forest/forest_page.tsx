@@ -3,6 +3,7 @@
 import { Button, IconButton, Segmented, Sheet } from '../../../ui';
 import { useRoomKeys } from '../../../shared/session/room_keys';
 import '../../../shared/panels/room.css';
+import { EyePicture } from './eye/eye_picture';
 import { FloorPlan } from './floor/floor_plan';
 import './forest.css';
 import { ForestInspector, makeForest, saveOutput } from './forest_inspector';
@@ -12,7 +13,7 @@ import { ForestSpace } from './forest_space';
 import { ForestStrip } from './forest_strip';
 import type { ForestSession } from './forest_session';
 import { useNarrow } from './use_narrow';
-import { planReach, view } from './views';
+import { eyeShown, planReach, view } from './views';
 
 export interface ForestPageProps {
   readonly session: ForestSession;
@@ -37,6 +38,8 @@ export function ForestPage({ session, onChooseFile }: ForestPageProps) {
   const scene = session.scene.value;
   const made = session.shown.value;
   const shown = made === null ? 'plan' : view.value;
+  const planned = session.plan.planned.value;
+  const withEye = shown === 'plan' && (eyeShown.value ?? !isNarrow);
   const options = views.map(({ value, label, short }) => ({
     value,
     label: isNarrow ? short : label,
@@ -44,11 +47,12 @@ export function ForestPage({ session, onChooseFile }: ForestPageProps) {
   }));
   return (
     <>
-      <main class="view forest-view" aria-label="Pillar forest">
+      <main class={withEye ? 'view forest-view with-eye' : 'view forest-view'} aria-label="Pillar forest">
         <h1 class="hidden-text">Pillar forest</h1>
         {shown === 'space' ? <ForestSpace session={session} /> : null}
         {shown === 'pictures' && made ? <ForestPictures session={session} result={made} /> : null}
         {shown === 'plan' && scene ? <FloorPlan session={session} scene={scene} /> : null}
+        {withEye && planned ? <EyePicture session={session} planned={planned} /> : null}
         <div class="float top-left forest-bar">
           <Button icon="chevronLeft" size="small" onClick={() => session.show(false)}>
             Relief
@@ -61,13 +65,22 @@ export function ForestPage({ session, onChooseFile }: ForestPageProps) {
             onChange={(value) => (view.value = value)}
           />
           {shown === 'plan' ? (
-            <IconButton
-              icon="frame"
-              class="outlined"
-              label="Show the floor up to the eyes"
-              pressed={planReach.value === 'eyes'}
-              onClick={() => (planReach.value = planReach.value === 'eyes' ? 'pillars' : 'eyes')}
-            />
+            <>
+              <IconButton
+                icon="frame"
+                class="outlined"
+                label="Show the floor up to the eyes"
+                pressed={planReach.value === 'eyes'}
+                onClick={() => (planReach.value = planReach.value === 'eyes' ? 'pillars' : 'eyes')}
+              />
+              <IconButton
+                icon="eye"
+                class="outlined"
+                label="Show what an eye sees"
+                pressed={withEye}
+                onClick={() => (eyeShown.value = !withEye)}
+              />
+            </>
           ) : null}
         </div>
         <div class="float bottom-left foot">

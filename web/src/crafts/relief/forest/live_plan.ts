@@ -8,6 +8,8 @@ import { jsonEqual } from '../../../project/document';
 import { bytesOf } from '../../../shared/session/import_model';
 import type { Companion } from '../../../shared/session/craft_document';
 import type { RoomSession } from '../../../shared/session/room_session';
+import type { ModelPicture } from './eye/model_pictures';
+import { ModelPictures } from './eye/model_pictures';
 import type { ForestDocument } from './forest_document';
 import { forestOperation, sameScene, subjectOf } from './forest_document';
 import type { Plan } from './plan';
@@ -17,7 +19,7 @@ import { readScene, sceneBytes } from './scene';
 
 interface PlanRequest {
   readonly scene: Scene | null;
-  readonly models: readonly Companion[];
+  readonly files: readonly Companion[];
   readonly parameters: JsonObject;
 }
 
@@ -25,13 +27,22 @@ export interface Planned extends PlanRequest {
   readonly plan: Plan;
   /** With the pillars that a layout made. */
   readonly made: Scene;
+  /** Of each viewpoint's model, as it is seen from there. */
+  readonly models: readonly ModelPicture[];
   readonly report: Report;
 }
 
 const sameRequest = (a: PlanRequest, b: PlanRequest): boolean =>
   jsonEqual(a.parameters, b.parameters) &&
   sameScene(a.scene, b.scene) &&
-  subjectOf(null, a.models).key === subjectOf(null, b.models).key;
+  subjectOf(null, a.files).key === subjectOf(null, b.files).key;
+
+const requestOf = ({ scene, models, parameters }: ForestDocument): PlanRequest => ({
+  scene,
+  files: models,
+  parameters,
+});
+const planOutputs = ['plan.json', 'scene.json', 'models.zip'];
 
 export class LivePlan {
   /** The last that the core could make. */
@@ -40,6 +51,7 @@ export class LivePlan {
   /** Why there is none of the scene as it stands. */
   readonly problem = signal<string | null>(null);
   readonly #room: RoomSession<ForestDocument>;
+  readonly #pictures = new ModelPictures();
   readonly #latest = new LatestOnly<PlanRequest>(
     (request, abort) => this.#run(request, abort),
     () => false,
@@ -52,11 +64,10 @@ export class LivePlan {
 
   startFollowing(): void {
     effect(() => {
-      const { scene, models, parameters } = this.#room.document.value;
+      const request = requestOf(this.#room.document.value);
       if (!this.#room.active.value || this.#room.operation.value === null) return;
       untracked(() => {
         const planned = this.planned.value;
-        const request = { scene, models, parameters };
         if (planned && sameRequest(planned, request)) {
           this.#latest.cancel();
           this.#settle(null, null);
@@ -68,7 +79,7 @@ export class LivePlan {
   /** It is of the scene as it stands. */
   readonly fits = computed(() => {
     const planned = this.planned.value;
-    return planned !== null && sameRequest(planned, this.#room.document.value);
+    return planned !== null && sameRequest(planned, requestOf(this.#room.document.value));
   });
 
   #settle(field: string | null, message: string | null): void {
@@ -80,15 +91,17 @@ export class LivePlan {
     const { browser, projects } = this.#room.services;
     this.running.value = true;
     try {
-      const { scene, models, parameters } = request;
+      const { scene, files, parameters } = request;
       const hash = scene && (await projects.blobs.hold(sceneBytes(scene)));
-      const { inputs } = subjectOf(hash, models);
-      const job = { operation: forestOperation, parameters, inputs, outputs: ['plan.json', 'scene.json'] };
+      const { inputs } = subjectOf(hash, files);
+      const job = { operation: forestOperation, parameters, inputs, outputs: planOutputs };
       const result = await browser.run(job, { signal });
       const plan = readPlan(await bytesOf(result, 'plan.json'));
       const made = readScene(await bytesOf(result, 'scene.json'));
+      const pictures = await bytesOf(result, 'models.zip');
       if (signal.aborted) return;
-      this.planned.value = { ...request, plan, made, report: result.report };
+      const models = this.#pictures.of(pictures);
+      this.planned.value = { ...request, plan, made, models, report: result.report };
       this.#settle(null, null);
     } catch (thrown) {
       const error = asJobError(thrown);

@@ -12,6 +12,9 @@ export const view = signal<ForestView>('plan');
 /** The plan leaves out eyes that stand far away, or shows everything. */
 export const planReach = signal<'pillars' | 'eyes'>('pillars');
 
+/** Whether the plan has beside it what an eye sees; null: where there is room. */
+export const eyeShown = signal<boolean | null>(null);
+
 export const colourOf = (viewpoint: number): string => `var(${colourToken(viewpoint)})`;
 
 /** "Bust", "lion". */

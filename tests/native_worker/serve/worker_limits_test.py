@@ -13,12 +13,8 @@ import threading
 import time
 import unittest
 
-sys.path.insert(0, str(pathlib.Path(__file__).parent))
+from worker_case import LONG, PROGRAM, PYRAMID
 from worker import PageSocket, Worker, eventually
-
-PROGRAM = sys.argv.pop(1)
-PYRAMID = {"mesh": {"sample": "pyramid", "vertices": 1500}}
-LONG = {"operation": "relief", "parameters": {"thickness_mm": 1}, "inputs": {"mesh": {"sample": "bust", "vertices": 400000}}, "outputs": []}
 
 
 class Strangers(unittest.TestCase):

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/context.h"
-#include "geometry/samples/sculpting/halfedge_surface.h"
+#include "geometry/samples/remeshing/halfedge_surface.h"
 
 namespace formwright::samples {
 
@@ -20,17 +20,6 @@ class TargetShape {
   virtual Point project(const Point& p, std::uint32_t patches, double step, Point& slope) const = 0;
 };
 
-/// Newton's step p - f g / |g|^2 with value f and gradient g from four samples at the corners of a tetrahedron of size
-/// `step`; with a known slope one sample does (a chord step).
-class ImplicitTarget : public TargetShape {
- public:
-  explicit ImplicitTarget(const Field& field) : field_(field) {}
-  Point project(const Point& p, std::uint32_t patches, double step, Point& slope) const override;
-
- private:
-  const Field& field_;
-};
-
 /// Exactly `vertex_count` vertices. `patch` per triangle as in HalfedgeSurface, changed with the surface.
 Surface remesh(const Surface& surface, std::vector<int>& patch, const TargetShape& target, int vertex_count,
                Context& context);
@@ -41,8 +30,5 @@ Surface remesh(const Surface& surface, std::vector<int>& patch, const TargetShap
 inline constexpr int first_rim_patch = 20;
 Surface remesh_open(const Surface& surface, const std::function<int(const Point&, const Point&)>& side,
                     const TargetShape& target, int vertex_count, Context& context);
-
-/// Marching cubes on a fitting grid, then remesh.
-Surface mesh_implicit(const ImplicitShape& shape, double area_mm2, int vertex_count, Context& context);
 
 }  // namespace formwright::samples

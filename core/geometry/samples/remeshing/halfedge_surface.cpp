@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geometry/samples/sculpting/halfedge_surface.h"
+#include "geometry/samples/remeshing/halfedge_surface.h"
 
 #include <algorithm>
 #include <bit>

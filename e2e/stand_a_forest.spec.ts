@@ -226,8 +226,8 @@ test('on a phone a pillar is dragged and the list lies below', async ({ page }) 
   const seen = page.getByRole('img', { name: /^Bust and the pillars, seen from viewpoint 1$/ });
   await expect(seen).toBeHidden();
   await page.getByRole('button', { name: 'Show what an eye sees' }).click();
-  const [above, below] = [await plan(page).boundingBox(), await seen.boundingBox()];
-  expect((above?.y ?? 0) + (above?.height ?? 999)).toBeLessThanOrEqual(below?.y ?? 0);
+  const [left, right] = [await plan(page).boundingBox(), await seen.boundingBox()];
+  expect((left?.x ?? 0) + (left?.width ?? 999)).toBeLessThanOrEqual(right?.x ?? 0);
   await page.getByRole('button', { name: 'Show what an eye sees' }).click();
   await page.getByRole('button', { name: 'Make this panel taller' }).click();
   await expect(page.getByRole('region', { name: 'Pillar 9' })).toBeVisible();

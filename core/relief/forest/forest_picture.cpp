@@ -124,8 +124,7 @@ Image picture_of_model(const ViewFrame& frame, const Triangles& F, int pixels, C
     for (int column = 0; column < grid.columns; ++column) {
       const std::size_t at = seen.at(row, column);
       if (!seen.covered[at]) continue;
-      const std::uint8_t grey =
-          grey_of(matt_brightness(light.dot(Vec3(seen.x[at], seen.y[at], seen.z[at]))));
+      const std::uint8_t grey = grey_of(matt_brightness(light.dot(Vec3(seen.x[at], seen.y[at], seen.z[at]))));
       image.at(column, grid.rows - 1 - row) = {grey, grey, grey, 255};
     }
   return image;

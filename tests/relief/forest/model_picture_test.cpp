@@ -42,8 +42,7 @@ TEST_CASE("ModelPicture.ABallIsARoundDiscLitAsItsNormalsSay") {
                    towards_squared = 1 - right * right - up * up;
       if (towards_squared < 0.1) continue;
       ++inside;
-      const double light_level =
-          0.12 + 0.75 * std::max(0.0, light.dot(Vec3(right, up, std::sqrt(towards_squared))));
+      const double light_level = 0.12 + 0.75 * std::max(0.0, light.dot(Vec3(right, up, std::sqrt(towards_squared))));
       const int expected = byte_of_light()[static_cast<std::size_t>(std::lround(light_level * light_levels))];
       difference += std::abs(expected - pixel[0]);
     }

@@ -16,6 +16,8 @@ import { seenPillars } from './seen_walls';
 const looking = signal(0);
 /** Of what the model needs. */
 const margin = 1.2;
+/** Of the shade on a wall that is seen from its edge. */
+const darkest = 0.45;
 
 const points = (corners: readonly Seen[]) => corners.map(({ x_mm, y_mm }) => `${x_mm.toFixed(2)},${(-y_mm).toFixed(2)}`).join(' '); // prettier-ignore
 
@@ -111,14 +113,17 @@ function PillarPicture({ camera, pillar }: { camera: EyeCamera; pillar: SeenPill
   const { height_mm, outline_mm, walls } = pillar;
   const side = ([a, b]: Strip['foot_mm']) =>
     points([camera.seen(a, 0), camera.seen(b, 0), camera.seen(b, height_mm), camera.seen(a, height_mm)]);
-  const fill = ([a = 0, b]: Strip['owners']) =>
-    b === undefined ? colourOf(a) : `url(#eye-${a + 1}-${b + 1})`;
+  // Neighbours of one colour overlap by a line, or what lies behind would shine through between them.
+  const paint = ([a = 0, b]: Strip['owners']) => {
+    const colour = b === undefined ? colourOf(a) : `url(#eye-${a + 1}-${b + 1})`;
+    return { fill: colour, stroke: colour };
+  };
   return (
     <g data-pillar={pillar.pillar + 1}>
       {camera.eye_mm[2] > height_mm ? (
         <polygon class="top" points={points(outline_mm.map((place) => camera.seen(place, height_mm)))} />
       ) : null}
-      {walls.map(({ foot_mm, strips }, i) => (
+      {walls.map(({ foot_mm, facing, strips }, i) => (
         <g key={i}>
           <polygon class="wall" points={side(foot_mm)} />
           {strips.map((strip, k) => (
@@ -126,9 +131,10 @@ function PillarPicture({ camera, pillar }: { camera: EyeCamera; pillar: SeenPill
               key={k}
               data-owners={strip.owners.map((owner) => owner + 1).join(' ')}
               points={side(strip.foot_mm)}
-              style={{ fill: fill(strip.owners) }}
+              style={paint(strip.owners)}
             />
           ))}
+          <polygon class="shade" points={side(foot_mm)} style={{ opacity: darkest * (1 - facing) }} />
         </g>
       ))}
     </g>

@@ -15,6 +15,8 @@ export interface Strip {
 export interface Wall {
   /** Where it stands, from left to right as seen from outside. */
   readonly foot_mm: Foot;
+  /** 1 where it faces the eye, 0 where it is seen from its edge. */
+  readonly facing: number;
   /** What of it is not bare. */
   readonly strips: readonly Strip[];
 }
@@ -51,10 +53,12 @@ function aheadAt({ from, to, near_mm, far_mm }: Span, tangent: number): number {
   return 1 / ((1 - share) / near_mm + share / far_mm);
 }
 
-const isFacing = (camera: EyeCamera, [a, b]: Foot): boolean => {
+/** Cosine between what stands square on a wall and the way to the eye; negative where it is turned away. */
+function facing(camera: EyeCamera, [a, b]: Foot): number {
   const [x, y] = [b[0] - a[0], b[1] - a[1]];
-  return y * (camera.eye_mm[0] - a[0]) - x * (camera.eye_mm[1] - a[1]) > 0;
-};
+  const to = [camera.eye_mm[0] - 0.5 * (a[0] + b[0]), camera.eye_mm[1] - 0.5 * (a[1] + b[1])] as const;
+  return (y * to[0] - x * to[1]) / (Math.hypot(x, y) * Math.hypot(...to));
+}
 const isAhead = (camera: EyeCamera, [a, b]: Foot): boolean =>
   Math.min(camera.ahead_mm(a), camera.ahead_mm(b)) > camera.nearest_mm;
 
@@ -91,8 +95,12 @@ function stripsOf({ viewpoints, shared }: Plan, pillar: number): Strip[] {
 function wallsOf(camera: EyeCamera, outline: readonly Place[], strips: readonly Strip[]): Wall[] {
   const distance = ({ foot_mm: [a, b] }: Wall) => camera.ahead_mm(a) + camera.ahead_mm(b);
   return pieces([...outline, ...outline.slice(0, 1)])
-    .filter((foot_mm) => isAhead(camera, foot_mm) && isFacing(camera, foot_mm))
-    .map((foot_mm) => ({ foot_mm, strips: strips.filter((strip) => liesOn(strip.foot_mm, foot_mm)) }))
+    .filter((foot_mm) => isAhead(camera, foot_mm) && facing(camera, foot_mm) > 0)
+    .map((foot_mm) => ({
+      foot_mm,
+      facing: facing(camera, foot_mm),
+      strips: strips.filter((strip) => liesOn(strip.foot_mm, foot_mm)),
+    }))
     .sort((a, b) => distance(b) - distance(a));
 }
 

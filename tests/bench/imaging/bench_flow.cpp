@@ -93,8 +93,10 @@ int main(int argc, char** argv) {
     for (int y = margin; y < side - margin; ++y)
       for (int x = margin; x < side - margin; ++x) {
         const std::size_t i = flow.index(x, y);
-        const int there_x = std::clamp(static_cast<int>(std::lround(x + pair.truth.u[i])), 0, side - 1),
-                  there_y = std::clamp(static_cast<int>(std::lround(y + pair.truth.v[i])), 0, side - 1);
+        const int there_x =
+                      std::clamp(static_cast<int>(std::lround(x + static_cast<double>(pair.truth.u[i]))), 0, side - 1),
+                  there_y =
+                      std::clamp(static_cast<int>(std::lround(y + static_cast<double>(pair.truth.v[i]))), 0, side - 1);
         if (second.at(there_x, there_y)[3] == 0) continue;
         sum += std::hypot(flow.u[i] - pair.truth.u[i], flow.v[i] - pair.truth.v[i]);
         ++count;

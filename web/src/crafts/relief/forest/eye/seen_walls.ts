@@ -12,7 +12,7 @@ export interface Strip {
   readonly owners: readonly number[];
 }
 
-export interface Wall {
+interface Wall {
   /** Where it stands, from left to right as seen from outside. */
   readonly foot_mm: Foot;
   /** 1 where it faces the eye, 0 where it is seen from its edge. */

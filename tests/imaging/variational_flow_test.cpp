@@ -110,6 +110,33 @@ TEST_CASE("VariationalFlow.WhatIsMissingIsBridged") {
   CHECK_THAT(flow.v[middle], WithinAbs(pair.truth.v[middle], 0.5));
 }
 
+TEST_CASE("VariationalFlow.WhatIsSeenBesideHolesIsFoundNearlyAsWell") {
+  constexpr int side = 320, radius = 8;
+  test::WarpedPair pair = warped_pair(side, side, test::waves(2, 60), {.noise = 2, .blur_px = 0.5, .lighting = 0.05});
+  const Flow whole = flow_of(pair);
+  std::vector<char> hole(pair.second.pixels.size(), 0);
+  for (int k = 0; k < 24; ++k) {
+    const int middle_x = 31 + 53 * (k % 6) + 7 * (k % 4), middle_y = 40 + 76 * (k / 6) + 9 * (k % 3);
+    for (int y = 0; y < side; ++y)
+      for (int x = 0; x < side; ++x)
+        if (std::hypot(x - middle_x, y - middle_y) < radius) {
+          pair.second.at(x, y) = Float4{255, 0, 255, 0};
+          hole[pair.second.index(x, y)] = 1;
+        }
+  }
+  const Flow flow = flow_of(pair);
+  double error = 0, error_whole = 0;
+  for (int y = 16; y < side - 16; ++y)
+    for (int x = 16; x < side - 16; ++x) {
+      const std::size_t i = flow.index(x, y);
+      const double u = static_cast<double>(pair.truth.u[i]), v = static_cast<double>(pair.truth.v[i]);
+      if (hole[pair.second.index(static_cast<int>(std::lround(x + u)), static_cast<int>(std::lround(y + v)))]) continue;
+      error += std::hypot(static_cast<double>(flow.u[i]) - u, static_cast<double>(flow.v[i]) - v);
+      error_whole += std::hypot(static_cast<double>(whole.u[i]) - u, static_cast<double>(whole.v[i]) - v);
+    }
+  CHECK(error < 1.25 * error_whole);
+}
+
 TEST_CASE("VariationalFlow.NothingKnownGivesNoFlow") {
   const WeightedPicture empty(40, 40);
   Context context;

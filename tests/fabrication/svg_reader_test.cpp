@@ -213,18 +213,18 @@ TEST_CASE("SvgReader.RefusesWithTheFix") {
   CHECK(refusal("<svg width='10mm' height='10mm'><text>a</text></svg>").find("convert the text to paths") !=
         std::string::npos);
   CHECK(refusal("<svg width='10mm' height='10mm'><image/></svg>").find("pictures") != std::string::npos);
-  const std::string line = "<path stroke='red' d='M0 0h10'/></svg>";
-  CHECK(refusal("<svg viewBox='0 0 10 10'>" + line).find("user_unit") != std::string::npos);
-  CHECK(refusal("<svg width='100%' height='100%' viewBox='0 0 10 10'>" + line).find("user_unit") != std::string::npos);
-  CHECK(refusal("<svg width='30000mm' height='10mm'>" + line).find("larger than 20 m") != std::string::npos);
-  CHECK(refusal("<svg width='10mm' height='10mm'><g transform='scale(1e9)'>" + line.substr(0, line.size() - 6) +
+  const std::string red_line = "<path stroke='red' d='M0 0h10'/></svg>";
+  CHECK(refusal("<svg viewBox='0 0 10 10'>" + red_line).find("user_unit") != std::string::npos);
+  CHECK(refusal("<svg width='100%' height='100%' viewBox='0 0 10 10'>" + red_line).find("user_unit") != std::string::npos);
+  CHECK(refusal("<svg width='30000mm' height='10mm'>" + red_line).find("larger than 20 m") != std::string::npos);
+  CHECK(refusal("<svg width='10mm' height='10mm'><g transform='scale(1e9)'>" + red_line.substr(0, red_line.size() - 6) +
                 "</g></svg>")
             .find("farther than 20 m") != std::string::npos);
   CHECK(refusal("<svg width='10mm' height='10mm'><g id='a'><use href='#a'/></g></svg>").find("nested") !=
         std::string::npos);
   SvgReadOptions inches;
   inches.user_unit = UserUnit::inch;
-  CHECK_THAT(read("<svg viewBox='0 0 10 10'>" + line, inches).sheet.width_mm, WithinAbs(254, 1e-9));
+  CHECK_THAT(read("<svg viewBox='0 0 10 10'>" + red_line, inches).sheet.width_mm, WithinAbs(254, 1e-9));
 }
 
 TEST_CASE("SvgReader.DamagedPartsAreReadAsFarAsTheyGo") {

@@ -5,6 +5,7 @@ import type { ColourMapping, Hit, Marker, Plate, Vec3 } from '../api';
 import type { Screen } from '../camera/camera';
 import { formatValue } from '../mesh/colour_map';
 import { Dimensions, type Point } from './dimensions';
+import { readable } from './labels';
 import { type Extent, SwipeDivider } from './swipe_divider';
 
 export interface Layout {
@@ -79,10 +80,16 @@ export class Furniture {
       ? (corners as [Point, Point, Point, Point])
       : null;
     this.dimensions.draw(all, layout.plate?.widthMm ?? 0, layout.plate?.heightMm ?? 0);
-    for (const { marker, element } of this.markers.values()) {
-      const at = layout.project(marker.positionMm);
+    const placed = [...this.markers.values()].map(({ marker, element }) => ({
+      element,
+      at: layout.project(marker.positionMm),
+      text: marker.label ?? '',
+    }));
+    const shown = readable(placed);
+    for (const [i, { element, at }] of placed.entries()) {
       element.hidden = at === null;
       if (at) element.style.transform = `translate(${at.xPx.toFixed(2)}px, ${at.yPx.toFixed(2)}px)`;
+      element.toggleAttribute('data-crowded', !shown[i]);
     }
   }
 

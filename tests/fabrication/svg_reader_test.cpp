@@ -215,7 +215,8 @@ TEST_CASE("SvgReader.RefusesWithTheFix") {
   CHECK(refusal("<svg width='10mm' height='10mm'><image/></svg>").find("pictures") != std::string::npos);
   const std::string red_line = "<path stroke='red' d='M0 0h10'/></svg>";
   CHECK(refusal("<svg viewBox='0 0 10 10'>" + red_line).find("user_unit") != std::string::npos);
-  CHECK(refusal("<svg width='100%' height='100%' viewBox='0 0 10 10'>" + red_line).find("user_unit") != std::string::npos);
+  CHECK(refusal("<svg width='100%' height='100%' viewBox='0 0 10 10'>" + red_line).find("user_unit") !=
+        std::string::npos);
   CHECK(refusal("<svg width='30000mm' height='10mm'>" + red_line).find("larger than 20 m") != std::string::npos);
   CHECK(refusal("<svg width='10mm' height='10mm'><g transform='scale(1e9)'>" + red_line.substr(0, red_line.size() - 6) +
                 "</g></svg>")

@@ -65,6 +65,17 @@ test('what is painted stands out, is undone, and survives a reload', async ({ pa
   await expect(painted(page)).toHaveText('Painted: Own thickness.');
   await solve(page);
   expect(await depthOfSolid(page)).toBeCloseTo(13, 5);
+
+  // The relief of before comes back with what was painted then: nothing.
+  const results = page.getByRole('list', { name: 'Earlier results' }).getByRole('button');
+  await expect(results).toHaveCount(2);
+  await results.nth(1).click();
+  await expect(painted(page)).toBeHidden();
+  await expect(strip(page, 'Relief ready')).toBeVisible();
+  expect(await depthOfSolid(page)).toBeCloseTo(8, 5);
+  await results.nth(0).click();
+  await expect(painted(page)).toHaveText('Painted: Own thickness.');
+  await expect(strip(page, 'Relief ready')).toBeVisible();
 });
 
 test.describe('with a finger on a narrow screen', () => {

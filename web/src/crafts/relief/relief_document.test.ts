@@ -32,6 +32,24 @@ it('a result made on one base is not that of another', () => {
   expect(currentResult(results, null)).toBeNull();
 });
 
+it('an earlier result comes back with its base and what was painted', () => {
+  const painting = { on: 'a'.repeat(64), file: blob('c') };
+  const made = { id: 'one', mesh: '', parameters: { width_mm: 50 } } as unknown as CraftResult;
+  const withResult = relief.addResult(made).apply(takeBase(file).apply(start));
+  const painted = relief.command({ label: 'Paint' }, () => ({ painting })).apply(withResult);
+  const noted = relief.noteInputs(made, relief.of(painted)).apply(painted);
+  const later = relief
+    .command({ label: 'Clear' }, () => ({ painting: null }))
+    .apply(takeBase(null).apply(noted));
+  const [result] = relief.of(later).results;
+  if (result === undefined) throw new Error('the result is gone');
+  const restored = relief.of(relief.restoreResult(result, 'Restore').apply(later));
+  expect(restored).toMatchObject({ base: file, painting, parameters: { width_mm: 50 } });
+  // One that an earlier version made says nothing of them: what is there stays.
+  const old = relief.of(relief.restoreResult(made, 'Restore').apply(painted));
+  expect(old).toMatchObject({ base: file, painting });
+});
+
 it('a project of an earlier version has no base', () => {
   const { base: _, ...old } = relief.of(start);
   const document = { ...start, crafts: { relief: old as never } };

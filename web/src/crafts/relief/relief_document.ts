@@ -13,6 +13,17 @@ export interface Painting {
   readonly file: BlobReference | null;
 }
 
+/** What a relief was made of beside its model and its parameters. */
+interface FurtherInputs {
+  readonly base: Companion | null;
+  readonly painting: Painting | null;
+}
+
+export interface ReliefResult extends CraftResult {
+  /** Left out until it is written beside it. */
+  readonly made_with?: FurtherInputs;
+}
+
 export interface ReliefDocument extends CraftDocument {
   /** The file of the surface that the relief is worked into; null for a built-in shape. */
   readonly base: Companion | null;
@@ -22,7 +33,18 @@ export interface ReliefDocument extends CraftDocument {
   readonly painting: Painting | null;
 }
 
-export const relief = new CraftCommands<ReliefDocument>('relief', {
+class ReliefCommands extends CraftCommands<ReliefDocument> {
+  /** So that an earlier relief can be returned to, with its base and what was painted. */
+  noteInputs({ id }: ReliefResult, { base, painting }: ReliefDocument) {
+    return this.amendResult(id, (result) => ({ ...result, made_with: { base, painting } }));
+  }
+
+  override restoreResult(result: ReliefResult, label: string) {
+    return this.command({ label }, () => ({ parameters: result.parameters, ...result.made_with }));
+  }
+}
+
+export const relief = new ReliefCommands('relief', {
   ...emptyCraft,
   base: null,
   light: {},
@@ -44,7 +66,7 @@ export const takeBase = (base: Companion | null) =>
 export function currentResult(
   { parameters, results }: ReliefDocument,
   subject: Subject | null,
-): CraftResult | null {
+): ReliefResult | null {
   if (subject === null) return null;
   const request = { mesh: subject.key, parameters };
   return results.find((result) => sameRequest(result, request)) ?? null;

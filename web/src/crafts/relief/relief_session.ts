@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the relief page does beyond opening models: keeps the preview up to date, shows what was solved.
-import { computed, effect, signal } from '@preact/signals';
+import { computed, effect, signal, untracked } from '@preact/signals';
 import type { JsonObject, Operation, Report } from '../../jobs/contract';
 import { findOperation } from '../../jobs/contract';
 import { readPly } from '../../jobs/mesh_reader';
@@ -23,7 +23,7 @@ import { ReliefPieces } from './pieces/relief_pieces';
 import { baseOf, parametersOf } from './meshes';
 import { PaintSession } from './paint/paint_session';
 import { paintingInputs } from './paint/painting';
-import type { ReliefDocument } from './relief_document';
+import type { ReliefDocument, ReliefResult } from './relief_document';
 import { baseInputs, currentResult, relief, takeBase } from './relief_document';
 import { solverSeconds } from './report';
 import type { Shown } from './shown';
@@ -78,6 +78,11 @@ export class ReliefSession extends RoomSession<ReliefDocument> {
     this.group = new ModelGroup(this);
     effect(() => {
       this.forest.active.value = this.active.value && this.forest.open.value;
+    });
+    effect(() => {
+      const found: ReliefResult | null = this.result.value;
+      if (found === null || found.made_with !== undefined) return;
+      untracked(() => this.services.projects.do(relief.noteInputs(found, this.document.value)));
     });
     this.previews.startFollowing();
     this.light.startFollowing();

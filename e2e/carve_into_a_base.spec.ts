@@ -65,11 +65,44 @@ test('a base from a file takes the place of the built-in shapes, and says where 
   await expect(page.getByText('wall.obj')).toBeVisible();
   await expect(page.getByRole('combobox', { name: 'Shape of the base' })).toBeHidden();
   await expect(strip(page, 'Preview up to date')).toBeVisible();
+  // It is moved by handles on the relief, in numbers, and back.
+  const field = (name: string) => page.getByRole('textbox', { name, exact: true });
+  await page.getByRole('radio', { name: 'Relief', exact: true }).click();
+  const move = page.getByRole('button', { name: /^Move wall\.obj\. / });
+  await expect(move).toBeVisible();
+  await move.focus();
+  await page.keyboard.press('ArrowRight');
+  await page.keyboard.press('Shift+ArrowUp');
+  await expect(field('Base to the right')).toHaveValue('5.0');
+  await expect(field('Base upwards')).toHaveValue('1.0');
+  await expect(strip(page, 'Preview up to date')).toBeVisible();
+  const box = await move.boundingBox();
+  if (box === null) throw new Error('the handle has no place');
+  const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  await page.mouse.move(x - 40, y + 20, { steps: 4 });
+  await page.mouse.up();
+  await expect(field('Base to the right')).not.toHaveValue('5.0');
+  expect(Number(await field('Base to the right').inputValue())).toBeLessThan(0);
+  expect(Number(await field('Base upwards').inputValue())).toBeLessThan(0);
+  await page.getByRole('button', { name: /^Turn wall\.obj\. / }).focus();
+  await page.keyboard.press('ArrowLeft');
+  await expect(field('Turn of the base file')).toHaveValue('15');
+  await page.getByRole('button', { name: /^Move wall\.obj away / }).focus();
+  await page.keyboard.press('ArrowUp');
+  await expect(field('Base forwards')).toHaveValue('-5.0');
+  await expect(strip(page, 'Preview up to date')).toBeVisible();
+  await page.keyboard.press('Control+z');
+  await expect(field('Base forwards')).toHaveValue('0.0');
+
   await file.setInputFiles(plane(20));
   await expect(
     page.getByRole('alert').getByText(/The base ends before the model does: \d+ of \d+ vertices/),
   ).toBeVisible();
   await page.getByRole('button', { name: 'Remove', exact: true }).click();
+  await expect(move).toBeHidden();
+  await expect(field('Base to the right')).toBeHidden();
   await expect(strip(page, 'Preview up to date')).toBeVisible();
   await expect(page.getByRole('combobox', { name: 'Shape of the base' })).toBeVisible();
 });

@@ -123,6 +123,21 @@ TEST_CASE("BaseShape.ReachesAsDeepAsItSays") {
   CHECK_THAT(largest, WithinAbs(0.2, 1e-12));
 }
 
+TEST_CASE("BaseShape.AFileIsTurnedAboutItsOriginThenMoved") {
+  ReliefOptions options;
+  options.width_mm = 50;
+  options.base_mesh_turn_deg = 90;
+  options.base_mesh_x_mm = 10;
+  options.base_mesh_y_mm = -5;
+  options.base_mesh_z_mm = 2;
+  TriangleMesh mesh = test::tetrahedron();
+  mesh.V.row(0) << 20, 0, 1;  // right of the middle, so turned to above it
+  const TriangleMesh base = base_from_file(mesh, options);
+  CHECK_THAT(base.V(0, 0), WithinAbs(10.0 / 50, 1e-15));
+  CHECK_THAT(base.V(0, 1), WithinAbs((20.0 - 5) / 50, 1e-15));
+  CHECK_THAT(base.V(0, 2), WithinAbs(-(1.0 + 2) / 50, 1e-15));  // view coordinates count away from the viewer
+}
+
 TEST_CASE("BaseShape.RefusesWhatCannotBe") {
   const ViewFrame frame = make_view_frame(test::icosphere(2), on(BaseShape::cylinder));
   ReliefOptions options = on(BaseShape::cylinder);

@@ -275,6 +275,21 @@ TEST_CASE("ReliefOnBase.ABaseFartherAwayOnlyShiftsAFarView") {
   CHECK((behind.moved.col(2) - plain.moved.col(2)).isApproxToConstant(0.12, 1e-9));
 }
 
+TEST_CASE("ReliefOnBase.AMovedFileIsAFileThatLiesThere") {
+  ReliefOptions options;
+  options.width_mm = 100;
+  options.projection = Projection::orthographic;
+  Context context;
+  ReliefSolver solver(test::icosphere(3), options, context);
+  const Relief there = solver.solve(options, BaseSurface(base_from_file(plane_mm(200, -12), options)), context);
+  ReliefOptions moved = options;
+  moved.base_mesh_z_mm = -12;
+  moved.base_mesh_x_mm = 30;
+  moved.base_mesh_turn_deg = 40;
+  const Relief brought = solver.solve(moved, BaseSurface(base_from_file(plane_mm(200, 0), moved)), context);
+  CHECK((brought.moved - there.moved).cwiseAbs().maxCoeff() <= 1e-9);
+}
+
 TEST_CASE("ReliefOnBase.WhatHasNoBaseBehindItIsFreeOrRefused") {
   ReliefOptions options;
   options.width_mm = 100;

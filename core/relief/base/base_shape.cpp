@@ -169,6 +169,13 @@ TriangleMesh base_from_file(const TriangleMesh& mesh, const ReliefOptions& optio
   if (mesh.F.rows() == 0)
     throw Error(ErrorCode::invalid_input, "base_mesh", "The base has no triangles: choose another file.");
   TriangleMesh base = mesh;
+  if (options.base_mesh_turn_deg != 0) {
+    const double turn = options.base_mesh_turn_deg * std::numbers::pi / 180;
+    const Eigen::VectorXd x = base.V.col(0), y = base.V.col(1);
+    base.V.col(0) = std::cos(turn) * x - std::sin(turn) * y;
+    base.V.col(1) = std::sin(turn) * x + std::cos(turn) * y;
+  }
+  base.V.rowwise() += Eigen::RowVector3d(options.base_mesh_x_mm, options.base_mesh_y_mm, options.base_mesh_z_mm);
   base.V /= options.width_mm;
   base.V.col(2) *= -1;  // away from the viewer
   return base;

@@ -99,6 +99,10 @@ struct ReliefOptions {
   BaseBend base_bend = BaseBend::bay;
   double base_turn_deg = 0;
   double carve_depth_mm = 0;
+  double base_mesh_x_mm = 0;
+  double base_mesh_y_mm = 0;
+  double base_mesh_z_mm = 0;
+  double base_mesh_turn_deg = 0;
   BaseMisses base_misses = BaseMisses::refused;
   Projection projection = Projection::perspective;
   std::array<double, 3> direction{0, 0, -1};
@@ -177,6 +181,23 @@ struct ReliefOptions {
           .group("Base")
           .only_with("base", "cylinder", "wave", "groove", "stairs", "strips")
           .slider(-90, 90),
+      parameter("base_mesh_x_mm", &ReliefOptions::base_mesh_x_mm, "Base to the right", unit::mm, -10000, 10000,
+                "Moves a base from a file to the right on the plate, as seen from the viewpoint; negative values to the "
+                "left.")
+          .group("Base")
+          .slider(-100, 100),
+      parameter("base_mesh_y_mm", &ReliefOptions::base_mesh_y_mm, "Base upwards", unit::mm, -10000, 10000,
+                "Moves a base from a file upwards on the plate, as seen from the viewpoint; negative values downwards.")
+          .group("Base")
+          .slider(-100, 100),
+      parameter("base_mesh_z_mm", &ReliefOptions::base_mesh_z_mm, "Base forwards", unit::mm, -10000, 10000,
+                "Moves a base from a file towards the viewer; negative values push it back into the plate.")
+          .group("Base")
+          .slider(-50, 50),
+      parameter("base_mesh_turn_deg", &ReliefOptions::base_mesh_turn_deg, "Turn of the base file", unit::degrees, -180,
+                180, "Turns a base from a file about its own origin, counter-clockwise as seen from the viewpoint.")
+          .group("Base")
+          .slider(-180, 180),
       parameter(
           "base_misses", &ReliefOptions::base_misses, "Where the base ends",
           "For a base from a file that is smaller than the model: refuse it, or leave the parts without a base behind them free in depth.")

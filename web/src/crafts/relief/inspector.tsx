@@ -23,8 +23,9 @@ import { ModelRow } from '../../shared/panels/model_row';
 import { printInPlastic } from '../../shared/print/print_request';
 import { outputOf } from '../../shared/session/full_solve';
 import { howMadeItem } from '../../shared/session/how_made';
-import { BaseFile } from './base_file';
+import { BaseFile } from './base/base_file';
 import { GroupList } from './group/group_list';
+import { placesBase } from './relief_document';
 import type { ReliefSession } from './relief_session';
 import type { SendToMill } from './send_relief';
 import { sendRelief } from './send_relief';
@@ -53,7 +54,7 @@ export function Inspector(props: InspectorProps) {
     Relief: null,
     Base: <BaseFile session={session} />,
   };
-  const shown = session.document.value.base ? withoutShape(operation) : operation;
+  const shown = session.document.value.base ? withoutShape(operation) : withoutPlace(operation);
   return (
     <>
       <div class="inspector-scroll" tabIndex={-1}>
@@ -80,6 +81,14 @@ export function Inspector(props: InspectorProps) {
 /** A base from a file has no built-in shape beside it. */
 function withoutShape(operation: Operation): Operation {
   const { base: _, ...properties } = operation.parameters.properties;
+  return { ...operation, parameters: { properties } };
+}
+
+/** Only a base from a file can be moved. */
+function withoutPlace(operation: Operation): Operation {
+  const properties = Object.fromEntries(
+    Object.entries(operation.parameters.properties).filter(([name]) => !placesBase(name)),
+  );
   return { ...operation, parameters: { properties } };
 }
 

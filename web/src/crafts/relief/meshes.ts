@@ -7,6 +7,7 @@ import { along, viewerAxes } from '../../view/vector';
 import { figure, vectorOf } from '../../shared/session/report';
 import type { ShadedMesh } from '../../shared/panels/shaded_mesh';
 import { shadingOf } from '../../shared/panels/shaded_mesh';
+import type { PlateAxes } from './base/base_place';
 import { brightnessMapping } from './light/light_values';
 import type { LitRelief } from './shown';
 
@@ -49,6 +50,17 @@ const boxTriangles = 12;
 /** What `base.ply` holds beyond a flat plate; null where it is one, which is drawn without a file. */
 export const baseOf = ({ positions, indices }: PlyMesh): MeshData | null =>
   indices.length > 3 * boxTriangles ? { positions, indices } : null;
+
+/** Where the plate lies in the scene. */
+export function plateAxesOf(report: Report): PlateAxes | null {
+  const middleMm = vectorOf(report, 'plate_centre_mm');
+  if (middleMm === null) return null;
+  const { right, up, forward } = viewerAxes(
+    axis(report, 'direction', [0, 0, -1]),
+    axis(report, 'up', [0, 1, 0]),
+  );
+  return { middleMm, right, up, towards: [-forward[0], -forward[1], -forward[2]] };
+}
 
 /** `base`: drawn instead of a flat plate. */
 export function plateOf(report: Report, thickness_mm: number, base: MeshData | null = null): Plate | null {

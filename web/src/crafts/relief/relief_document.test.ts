@@ -22,6 +22,17 @@ it('a base from a file takes the place of the built-in shapes, and goes again', 
   expect(baseInputs(without)).toEqual({});
 });
 
+it('another base begins where its file has it', () => {
+  const moved = relief
+    .command({ label: 'Move' }, ({ parameters }) => ({ parameters: { ...parameters, base_mesh_x_mm: 7 } }))
+    .apply(takeBase(file).apply(start));
+  expect(relief.of(moved).parameters).toEqual({ width_mm: 80, base_mesh_x_mm: 7 });
+  expect(relief.of(takeBase({ ...file, file_name: 'door.stl' }).apply(moved)).parameters).toEqual({
+    width_mm: 80,
+  });
+  expect(relief.of(takeBase(null).apply(moved)).parameters).toEqual({ width_mm: 80 });
+});
+
 it('a result made on one base is not that of another', () => {
   const document = relief.of(start);
   const on = (base: typeof file | null) => subjectOf(blob('a'), 'mesh', baseInputs({ ...document, base }));

@@ -55,12 +55,17 @@ export const relief = new ReliefCommands('relief', {
 export const baseInputs = ({ base }: ReliefDocument): Readonly<Record<string, JobInput>> =>
   base ? { base_mesh: { sha256: base.file.blob, file_name: base.file_name } } : {};
 
+/** Where the base from a file was put; of another file it says nothing. */
+export const placesBase = (parameter: string): boolean => parameter.startsWith('base_mesh_');
+
 /** A file takes the place of the built-in shapes. */
 export const takeBase = (base: Companion | null) =>
-  relief.command({ label: base ? 'Choose a base' : 'Use a built-in base' }, ({ parameters }) => {
-    const { base: _, ...others } = parameters;
-    return { base, parameters: base ? others : parameters };
-  });
+  relief.command({ label: base ? 'Choose a base' : 'Use a built-in base' }, ({ parameters }) => ({
+    base,
+    parameters: Object.fromEntries(
+      Object.entries(parameters).filter(([name]) => !placesBase(name) && !(base && name === 'base')),
+    ),
+  }));
 
 /** The result made with exactly the parameters and the subject in force, if there is one. */
 export function currentResult(

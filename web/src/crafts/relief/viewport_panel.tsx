@@ -11,9 +11,10 @@ import { narrow } from '../../shared/panels/narrow';
 import { figure } from '../../shared/session/report';
 import { originalData, scaled } from '../../shared/panels/shaded_mesh';
 import { ForestButton } from './forest/forest_button';
-import { GroupHandles } from './group/group_handles';
+import { BaseMover } from './base/base_mover';
 import { GroupMover } from './group/group_mover';
-import type { GripElements } from './group/hold';
+import type { GripElements } from './handles/grips';
+import { Handles } from './handles/handles';
 import { brushPointer, keepPainted } from './paint/paint_scene';
 import { PaintTool } from './paint/paint_tool';
 import { brightnessMapping } from './light/light_values';
@@ -66,6 +67,8 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
   const foot = useRef<HTMLDivElement>(null);
   const mover = useMemo(() => new GroupMover(session), [session]);
   const grips = useMemo((): GripElements => ({}), []);
+  const baseMover = useMemo(() => new BaseMover(session), [session]);
+  const baseGrips = useMemo((): GripElements => ({}), []);
   /** The view says itself why it cannot draw; what belongs to a picture goes away. */
   const drawing = useSignal(true);
   const isNarrow = useSignal(narrow());
@@ -89,7 +92,10 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
         else if (event.kind === 'click' && event.hit?.part === 'original' && mode.value === 'original')
           mover.choose(event.hit.triangle);
       },
-      onFrame: () => mover.placeHandles(viewport, grips, areModelsShown(session)),
+      onFrame: () => {
+        mover.placeHandles(viewport, grips, areModelsShown(session));
+        baseMover.placeHandles(viewport, baseGrips, isBaseShown(session));
+      },
     });
     const lightBall = new LightBall(light.value, (chosen) => {
       light.value = chosen;
@@ -105,6 +111,11 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
         void [mover.model.value, session.drawnScale.value];
         const there = areModelsShown(session);
         requestAnimationFrame(() => mover.placeHandles(viewport, grips, there));
+      }),
+      effect(() => {
+        void [baseMover.place.value, session.shown.value];
+        const there = isBaseShown(session);
+        requestAnimationFrame(() => baseMover.placeHandles(viewport, baseGrips, there));
       }),
       effect(() => {
         const painting = session.paint.open.value;
@@ -172,7 +183,10 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
         </div>
       ) : null}
       {areModelsShown(session) && drawing.value ? (
-        <GroupHandles mover={mover} viewport={() => made.value} elements={grips} />
+        <Handles mover={mover} viewport={() => made.value} elements={grips} />
+      ) : null}
+      {isBaseShown(session) && drawing.value ? (
+        <Handles mover={baseMover} viewport={() => made.value} elements={baseGrips} />
       ) : null}
       <div ref={foot} class="float bottom-left foot">
         {mode.value === 'error' && shown && !session.paint.open.value ? (
@@ -204,6 +218,10 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
 /** The models of a group, to be moved. */
 const areModelsShown = ({ group, paint }: ReliefSession): boolean =>
   group.models.value !== null && mode.value === 'original' && !paint.open.value;
+
+/** The relief on a base from a file, to be moved. */
+const isBaseShown = ({ document, shown, paint }: ReliefSession): boolean =>
+  document.value.base !== null && shown.value !== null && mode.value === 'relief' && !paint.open.value;
 
 /** Light is drawn as values on the relief, pieces in its place. */
 const drawnMode = (chosen: ReliefMode): ViewMode =>

@@ -5,8 +5,10 @@ import type { PlacedModel } from '../../../shared/session/craft_document';
 import { scaled } from '../../../shared/panels/shaded_mesh';
 import type { Viewport } from '../../../view';
 import type { ReliefSession } from '../relief_session';
-import type { Grip, GripElements } from './hold';
-import { byKey, dragged, grips } from './hold';
+import type { Grip, GripElements, Place } from '../handles/grips';
+import { placeAround } from '../handles/grips';
+import type { Mover } from '../handles/handles';
+import { byKey, dragged } from './hold';
 import type { Vector } from '../../../shared/geometry/rotation';
 import type { ViewAxes } from './placement';
 import { movedVertices, viewAxes } from './placement';
@@ -17,14 +19,9 @@ const labels: Readonly<Record<Grip, string>> = {
   turn: 'Turn',
   size: 'Change the size of',
 };
-/** Of the handles about the middle: none covers another, and none goes under what floats at the view's border. */
-const minRadiusPx = 44;
-const maxRadiusPx = 120;
 
-type Place = readonly [number, number];
-
-export class GroupMover {
-  /** The handle that is held. */
+export class GroupMover implements Mover {
+  readonly grips = ['move', 'depth', 'turn', 'size'] as const;
   readonly grip = signal<Grip | null>(null);
   readonly #session: ReliefSession;
   #from: {
@@ -43,6 +40,8 @@ export class GroupMover {
     const { group } = this.#session;
     return group.held.value ?? group.models.value?.[group.chosen.value] ?? null;
   });
+
+  readonly name = computed(() => this.model.value?.name ?? '');
 
   #axes(viewport: Viewport): ViewAxes {
     const { direction, up } = viewport.getCameraAsViewpoint();
@@ -87,7 +86,6 @@ export class GroupMover {
     );
   }
 
-  /** False for a key that does nothing. */
   key(viewport: Viewport, grip: Grip, key: string, fine: boolean): boolean {
     const model = this.model.peek();
     const next = model && byKey(model, grip, key, fine, this.#axes(viewport));
@@ -130,23 +128,12 @@ export class GroupMover {
   placeHandles(viewport: Viewport, elements: GripElements, there: boolean): void {
     const model = there ? this.model.peek() : null;
     const seen = model && this.#seen(viewport, model);
-    const radius =
-      model && seen ? Math.min(maxRadiusPx, Math.max(minRadiusPx, (0.5 * model.size_mm) / seen.mmAPixel)) : 0;
-    const diagonal = radius * Math.SQRT1_2;
-    const offsets: Readonly<Record<Grip, Place>> = {
-      move: [0, 0],
-      depth: [0, -radius],
-      turn: [radius, 0],
-      size: [diagonal, diagonal],
-    };
-    for (const grip of grips) {
-      const element = elements[grip];
-      if (!element) continue;
-      element.hidden = !seen;
-      if (!seen) continue;
-      const [x, y] = [seen.middlePx[0] + offsets[grip][0], seen.middlePx[1] + offsets[grip][1]];
-      element.style.translate = `${x.toFixed(1)}px ${y.toFixed(1)}px`;
-    }
+    placeAround(
+      elements,
+      this.grips,
+      seen && seen.middlePx,
+      model && seen ? (0.5 * model.size_mm) / seen.mmAPixel : 0,
+    );
   }
 
   /** The model of the group that has this triangle is the one to change. */

@@ -2,14 +2,9 @@
 // What a hand or a key does to one model of a group, seen along the picture's axes.
 import type { PlacedModel } from '../../../shared/session/craft_document';
 import type { Vector } from '../../../shared/geometry/rotation';
+import type { Grip } from '../handles/grips';
 import type { ViewAxes } from './placement';
 import { along, turnedBy } from './placement';
-
-export type Grip = 'move' | 'depth' | 'turn' | 'size';
-export const grips: readonly Grip[] = ['move', 'depth', 'turn', 'size'];
-
-/** Their buttons over the picture. */
-export type GripElements = Partial<Record<Grip, HTMLElement | null>>;
 
 const degreesAPixel = 0.5;
 const turnStep_deg = 5;

@@ -1,12 +1,25 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Handles over the model of a group that is changed: dragged, or moved with the arrow keys.
+// Handles over what is moved in the picture, a model of a group or the base: dragged, or moved with the arrow keys.
+import type { ReadonlySignal } from '@preact/signals';
 import { hideTip, Icon, tipHandlers } from '../../../ui';
 import '../../../shared/panels/move_handle.css';
-import './group_handles.css';
+import './handles.css';
 import type { Viewport } from '../../../view';
-import type { Grip, GripElements } from './hold';
-import { grips } from './hold';
-import type { GroupMover } from './group_mover';
+import type { Grip, GripElements, Place } from './grips';
+
+export interface Mover {
+  readonly grips: readonly Grip[];
+  /** The handle that is held. */
+  readonly grip: ReadonlySignal<Grip | null>;
+  /** What is moved. */
+  readonly name: ReadonlySignal<string>;
+  begin(viewport: Viewport, grip: Grip, px: Place): void;
+  /** `free`: turns by any angle rather than in steps. */
+  drag(viewport: Viewport, px: Place, free: boolean): void;
+  /** False for a key that does nothing. */
+  key(viewport: Viewport, grip: Grip, key: string, fine: boolean): boolean;
+  end(): void;
+}
 
 interface GripWords {
   readonly action: string;
@@ -25,21 +38,21 @@ const words: Readonly<Record<Grip, GripWords>> = {
   size: { action: 'Change the size of', keys: 'Up and down arrow keys: 5 %, with Shift 1 %', icon: 'frame' },
 };
 
-export interface GroupHandlesProps {
-  readonly mover: GroupMover;
+export interface HandlesProps {
+  readonly mover: Mover;
   readonly viewport: () => Viewport | null;
   readonly elements: GripElements;
 }
 
-export function GroupHandles({ mover, viewport, elements }: GroupHandlesProps) {
-  const at = (event: PointerEvent): [number, number] => {
+export function Handles({ mover, viewport, elements }: HandlesProps) {
+  const at = (event: PointerEvent): Place => {
     const box = viewport()?.canvas.getBoundingClientRect();
     return [event.clientX - (box?.left ?? 0), event.clientY - (box?.top ?? 0)];
   };
-  const name = mover.model.value?.name ?? '';
+  const name = mover.name.value;
   return (
     <>
-      {grips.map((grip) => {
+      {mover.grips.map((grip) => {
         const { action, keys, icon } = words[grip];
         const label = grip === 'depth' ? `Move ${name} away from the viewer or nearer` : `${action} ${name}`;
         return (
@@ -47,7 +60,7 @@ export function GroupHandles({ mover, viewport, elements }: GroupHandlesProps) {
             key={grip}
             ref={(element) => void (elements[grip] = element)}
             type="button"
-            class={`move-handle group-handle ${grip} ${mover.grip.value === grip ? 'held' : ''}`}
+            class={`move-handle view-handle ${grip} ${mover.grip.value === grip ? 'held' : ''}`}
             hidden
             aria-label={`${label}. ${keys}.`}
             {...tipHandlers(`${label}: drag, or ${keys.charAt(0).toLowerCase()}${keys.slice(1)}`)}

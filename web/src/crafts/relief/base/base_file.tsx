@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The surface that a relief is worked into, from a file.
 import { useRef } from 'preact/hooks';
-import { Button } from '../../ui';
-import type { ReliefSession } from './relief_session';
+import { Button } from '../../../ui';
+import type { ReliefSession } from '../relief_session';
 
 export function BaseFile({ session }: { readonly session: ReliefSession }) {
   const input = useRef<HTMLInputElement>(null);

@@ -22,7 +22,8 @@ TriangleMesh base_shape(const ReliefOptions& options, const ViewFrame& frame);
 std::optional<BaseBands> base_bands(const ReliefOptions& options, const ViewFrame& frame);
 
 /// A mesh from a file, in millimetres with x right, y up and z towards the viewer, the middle of the plate's front
-/// at the origin, in view coordinates: turned about its origin, then moved, as the options `base_mesh_...` say. Throws Error{invalid_input, "base_mesh"}: no triangles.
+/// at the origin, in view coordinates: turned about its origin, then moved, as the options `base_mesh_...` say. Throws
+/// Error{invalid_input, "base_mesh"}: no triangles.
 TriangleMesh base_from_file(const TriangleMesh& mesh, const ReliefOptions& options);
 
 }  // namespace formwright

@@ -181,9 +181,10 @@ struct ReliefOptions {
           .group("Base")
           .only_with("base", "cylinder", "wave", "groove", "stairs", "strips")
           .slider(-90, 90),
-      parameter("base_mesh_x_mm", &ReliefOptions::base_mesh_x_mm, "Base to the right", unit::mm, -10000, 10000,
-                "Moves a base from a file to the right on the plate, as seen from the viewpoint; negative values to the "
-                "left.")
+      parameter(
+          "base_mesh_x_mm", &ReliefOptions::base_mesh_x_mm, "Base to the right", unit::mm, -10000, 10000,
+          "Moves a base from a file to the right on the plate, as seen from the viewpoint; negative values to the "
+          "left.")
           .group("Base")
           .slider(-100, 100),
       parameter("base_mesh_y_mm", &ReliefOptions::base_mesh_y_mm, "Base upwards", unit::mm, -10000, 10000,

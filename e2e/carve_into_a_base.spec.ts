@@ -73,8 +73,8 @@ test('a base from a file takes the place of the built-in shapes, and says where 
   await move.focus();
   await page.keyboard.press('ArrowRight');
   await page.keyboard.press('Shift+ArrowUp');
-  await expect(field('Base to the right')).toHaveValue('5.0');
-  await expect(field('Base upwards')).toHaveValue('1.0');
+  await expect(field('Base to the right')).toHaveValue('5');
+  await expect(field('Base upwards')).toHaveValue('1');
   await expect(strip(page, 'Preview up to date')).toBeVisible();
   const box = await move.boundingBox();
   if (box === null) throw new Error('the handle has no place');
@@ -83,18 +83,17 @@ test('a base from a file takes the place of the built-in shapes, and says where 
   await page.mouse.down();
   await page.mouse.move(x - 40, y + 20, { steps: 4 });
   await page.mouse.up();
-  await expect(field('Base to the right')).not.toHaveValue('5.0');
-  expect(Number(await field('Base to the right').inputValue())).toBeLessThan(0);
-  expect(Number(await field('Base upwards').inputValue())).toBeLessThan(0);
+  await expect(field('Base to the right')).toHaveValue(/^−\d/);
+  await expect(field('Base upwards')).toHaveValue(/^−\d/);
   await page.getByRole('button', { name: /^Turn wall\.obj\. / }).focus();
   await page.keyboard.press('ArrowLeft');
-  await expect(field('Turn of the base file')).toHaveValue('15');
+  await expect(field('Turn of the base file')).toHaveValue(/^15/);
   await page.getByRole('button', { name: /^Move wall\.obj away / }).focus();
   await page.keyboard.press('ArrowUp');
-  await expect(field('Base forwards')).toHaveValue('-5.0');
+  await expect(field('Base forwards')).toHaveValue(/^−5/);
   await expect(strip(page, 'Preview up to date')).toBeVisible();
   await page.keyboard.press('Control+z');
-  await expect(field('Base forwards')).toHaveValue('0.0');
+  await expect(field('Base forwards')).toHaveValue(/^0/);
 
   await file.setInputFiles(plane(20));
   await expect(

@@ -3,7 +3,7 @@ import { expect, it } from 'vitest';
 import { newDocument } from '../../project/document';
 import type { CraftResult } from '../../shared/session/craft_document';
 import { subjectOf } from '../../shared/session/craft_document';
-import { baseInputs, currentResult, relief, takeBase } from './relief_document';
+import { baseInputs, currentResult, earlierResults, relief, takeBase } from './relief_document';
 
 const blob = (digit: string) => ({ blob: digit.repeat(64), bytes: 1, media_type: 'x' });
 const file = { file_name: 'wall.stl', file: blob('b') };
@@ -59,6 +59,21 @@ it('an earlier result comes back with its base and what was painted', () => {
   // One that an earlier version made says nothing of them: what is there stays.
   const old = relief.of(relief.restoreResult(made, 'Restore').apply(painted));
   expect(old).toMatchObject({ base: file, painting });
+});
+
+it('results of the same model on another base are offered once it is known which', () => {
+  const document = relief.of(start);
+  const on = (base: typeof file | null) => subjectOf(blob('a'), 'mesh', baseInputs({ ...document, base }));
+  const result = (id: string, mesh: string, made_with?: object) =>
+    ({ id, mesh, parameters: {}, ...(made_with ? { made_with } : {}) }) as unknown as CraftResult;
+  const results = [
+    result('here', on(file).key),
+    result('noted', on(null).key, { base: null, painting: null }),
+    result('unknown', on(null).key),
+    result('other model', 'd'.repeat(64), { base: null, painting: null }),
+  ];
+  expect(earlierResults({ ...document, results }, on(file)).map(({ id }) => id)).toEqual(['here', 'noted']);
+  expect(earlierResults({ ...document, results }, null)).toEqual([]);
 });
 
 it('a project of an earlier version has no base', () => {

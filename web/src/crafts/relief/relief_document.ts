@@ -76,3 +76,18 @@ export function currentResult(
   const request = { mesh: subject.key, parameters };
   return results.find((result) => sameRequest(result, request)) ?? null;
 }
+
+/** Of two subjects: made of one model. */
+export const sameMesh = (a: string, b: string | undefined): boolean => a.split('+')[0] === b?.split('+')[0];
+
+/** Those that can be returned to: made of the model in force, on whatever base and with whatever painting it was. */
+export const earlierResults = (
+  { results }: ReliefDocument,
+  subject: Subject | null,
+): readonly ReliefResult[] =>
+  subject === null
+    ? []
+    : results.filter(
+        ({ mesh, made_with }: ReliefResult) =>
+          mesh === subject.key || (made_with !== undefined && sameMesh(mesh, subject.key)),
+      );

@@ -24,7 +24,7 @@ import { baseOf, parametersOf } from './meshes';
 import { PaintSession } from './paint/paint_session';
 import { paintingInputs } from './paint/painting';
 import type { ReliefDocument, ReliefResult } from './relief_document';
-import { baseInputs, currentResult, relief, takeBase } from './relief_document';
+import { baseInputs, currentResult, relief, sameMesh, takeBase } from './relief_document';
 import { solverSeconds } from './report';
 import type { Shown } from './shown';
 
@@ -218,9 +218,6 @@ export class ReliefSession extends RoomSession<ReliefDocument> {
     };
   });
 }
-
-/** Keys of subjects begin with their mesh. */
-const sameMesh = (a: string, b: string | undefined): boolean => a.split('+')[0] === b?.split('+')[0];
 
 /** Until the first relief says the scale: the model's x extent as the width. */
 function provisionalScale(positions: Float32Array, width_mm: number): number {

@@ -3,7 +3,7 @@ import { formatFixed } from '../../ui';
 import type { CraftResult } from '../../shared/session/craft_document';
 import { CraftStrip } from '../../shared/panels/craft_strip';
 import { figure } from '../../shared/session/report';
-import { relief } from './relief_document';
+import { earlierResults, relief } from './relief_document';
 import type { ReliefSession } from './relief_session';
 import { solvedLine } from './report';
 
@@ -25,6 +25,7 @@ export const ResultsStrip = ({ session }: { session: ReliefSession }) => (
     usualParameter="thickness_mm"
     figureOf={errorText}
     figureName="mean shading difference"
+    results={earlierResults(session.document.value, session.subject.value)}
     onRestore={(one, label) => session.services.projects.do(relief.restoreResult(one, label))}
   />
 );

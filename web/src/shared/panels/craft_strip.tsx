@@ -21,6 +21,8 @@ export interface CraftStripProps<D extends CraftDocument, S extends ShownWork> {
   readonly figureOf: (result: CraftResult) => string;
   readonly figureName: string;
   readonly onRestore: (result: CraftResult, label: string) => void;
+  /** Which may be returned to; left out: those made from what is open. */
+  readonly results?: readonly CraftResult[];
 }
 
 export function CraftStrip<D extends CraftDocument, S extends ShownWork>(props: CraftStripProps<D, S>) {
@@ -52,6 +54,7 @@ export function CraftStrip<D extends CraftDocument, S extends ShownWork>(props: 
           return { short, spoken: `${props.figureName} ${short}` };
         }}
         onChoose={props.onRestore}
+        {...(props.results ? { results: props.results } : {})}
       />
     </JobStrip>
   );

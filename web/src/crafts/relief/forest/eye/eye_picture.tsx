@@ -5,6 +5,7 @@ import { useEffect, useMemo } from 'preact/hooks';
 import { formatFixed, withUnit } from '../../../../ui';
 import type { ForestSession } from '../forest_session';
 import type { Planned } from '../live_plan';
+import type { Plan } from '../plan';
 import { figuresOf } from '../plan';
 import { colourOf, modelName } from '../views';
 import { EyeCamera } from './eye_camera';
@@ -35,7 +36,7 @@ export function EyePicture({ session, planned }: { session: ForestSession; plann
   const name = modelName(session, viewpoint);
   return (
     <figure class="forest-eye">
-      <div role="group" aria-label="Whose eye">
+      <div role="group" aria-label="Viewpoint">
         {viewpoints.map((_, i) => (
           <button
             key={i}
@@ -64,6 +65,12 @@ export function EyePicture({ session, planned }: { session: ForestSession; plann
   );
 }
 
+/** Viewpoints of which two see one surface, from 1. */
+function sharedPairs({ shared }: Plan): (readonly [number, number])[] {
+  const pairs = shared.map(({ viewpoints: [a = 1, b = 1] }) => [a, b] as const);
+  return [...new Map(pairs.map((pair) => [pair.join(), pair])).values()];
+}
+
 function Drawing({ planned, v, label }: { planned: Planned; v: number; label: string }) {
   const { plan, made, models } = planned;
   const viewpoint = made.viewpoints[v];
@@ -85,9 +92,9 @@ function Drawing({ planned, v, label }: { planned: Planned; v: number; label: st
       style={{ aspectRatio: `${shown[0]} / ${shown[1]}` }}
     >
       <defs>
-        {plan.shared.map(({ viewpoints: [a = 1, b = 1] }, i) => (
+        {sharedPairs(plan).map(([a, b]) => (
           <pattern
-            key={i}
+            key={`${a} ${b}`}
             id={`eye-${a}-${b}`}
             width={0.04 * width}
             height={0.04 * width}

@@ -59,7 +59,7 @@ export function EyePicture({ session, planned }: { session: ForestSession; plann
         {name}
         {own === undefined
           ? null
-          : `: ${withUnit(formatFixed(own, own > 99.95 ? 0 : 1), '%')} on its pillars`}
+          : `: ${withUnit(formatFixed(own, own > 99.95 ? 0 : 1), '%')} on its pillars, seen from above`}
       </figcaption>
     </figure>
   );

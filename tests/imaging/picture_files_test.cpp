@@ -187,5 +187,21 @@ TEST_CASE("PictureFiles.AJpegHasSoManyScans") {
   CHECK(refused(with_scans(20)).find("passes") == std::string::npos);
 }
 
+TEST_CASE("PictureFiles.JpegWithoutATableThatItUsesIsRefused") {
+  // stb would decode with memory that nobody has written.
+  for (const Bytes& whole : {baseline_jpeg(ramp(64, 40)), of_hexadecimal(progressive_jpeg)})
+    for (const char marker : {'\xc4', '\xdb'}) {
+      const std::string_view text = as_text(whole);
+      const std::size_t begin = text.find(std::string{'\xff', marker});
+      REQUIRE(begin != std::string_view::npos);
+      const std::size_t length =
+          std::to_integer<std::size_t>(whole[begin + 2]) << 8 | std::to_integer<std::size_t>(whole[begin + 3]);
+      Bytes without(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(begin));
+      without.insert(without.end(), whole.begin() + static_cast<std::ptrdiff_t>(begin + 2 + length), whole.end());
+      CHECK(refused(without).find("it uses a table that it does not have") != std::string::npos);
+      CHECK_NOTHROW(read_picture(whole, "a.jpg", "texture"));
+    }
+}
+
 }  // namespace
 }  // namespace formwright

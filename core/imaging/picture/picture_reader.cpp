@@ -3,6 +3,9 @@
 
 #include <stb_image.h>
 
+#include <array>
+#include <bitset>
+#include <map>
 #include <memory>
 #include <string>
 
@@ -56,27 +59,87 @@ Image read_png(ByteView bytes, std::int64_t max_pixels) {
   return image;
 }
 
-/// Scans of a JPEG (ITU T.81 B.1.1): a progressive one has about ten. A scan of nothing but runs of empty blocks takes
-/// some hundred bytes and goes over the whole picture, so that thousands of them take minutes.
-int count_scans(ByteView bytes) {
-  const auto at = [&](std::size_t i) { return std::to_integer<unsigned>(bytes[i]); };
-  int scans = 0;
-  for (std::size_t i = 2; i + 3 < bytes.size();) {
-    const unsigned marker = at(i + 1);
-    if (at(i) != 0xff || marker == 0x00 || marker == 0xff || (marker >= 0xd0 && marker <= 0xd8)) {
-      ++i;  // within a scan: data, stuffed bytes and restarts
-      continue;
+/// What a JPEG says of itself before each of its scans (ITU T.81, B.2): which tables there are, and which its
+/// components use.
+class JpegScans {
+ public:
+  explicit JpegScans(ByteView bytes) : bytes_(bytes) {}
+
+  /// A progressive picture has about ten scans. One of nothing but runs of empty blocks takes some hundred bytes and
+  /// goes over the whole picture, so that thousands of them take minutes. A table that is used and not there is memory
+  /// to stb that nobody has written: it may read anywhere. Throws Damaged.
+  void check() {
+    int scans = 0;
+    for (std::size_t i = 2; i + 3 < bytes_.size();) {
+      const unsigned marker = at(i + 1);
+      if (at(i) != 0xff || marker == 0x00 || marker == 0xff || (marker >= 0xd0 && marker <= 0xd8)) {
+        ++i;  // within a scan: data, stuffed bytes and restarts
+        continue;
+      }
+      if (marker == 0xd9) break;
+      const std::size_t end = i + 2 + (at(i + 2) << 8 | at(i + 3));
+      const ByteView segment = bytes_.subspan(i + 4, end > i + 4 && end <= bytes_.size() ? end - i - 4 : 0);
+      if (marker == 0xc4) define_huffman(segment);
+      else if (marker == 0xdb) define_quantisation(segment);
+      else if (marker >= 0xc0 && marker <= 0xc2) read_frame(segment, marker == 0xc2);
+      else if (marker == 0xda) {
+        if (++scans > max_jpeg_scans) throw Damaged("it is drawn in more than 100 passes");
+        check_scan(segment);
+      }
+      i = end;
     }
-    if (marker == 0xd9) break;
-    scans += marker == 0xda;
-    i += 2 + (at(i + 2) << 8 | at(i + 3));
   }
-  return scans;
-}
+
+ private:
+  static unsigned value(std::byte byte) { return std::to_integer<unsigned>(byte); }
+  unsigned at(std::size_t i) const { return value(bytes_[i]); }
+
+  void define_huffman(ByteView segment) {
+    for (std::size_t p = 0; p + 17 <= segment.size();) {
+      const unsigned kind = value(segment[p]);
+      std::size_t symbols = 0;
+      for (std::size_t k = 1; k <= 16; ++k) symbols += value(segment[p + k]);
+      huffman_[kind >> 4 & 1].set(kind & 15);
+      p += 17 + symbols;
+    }
+  }
+  void define_quantisation(ByteView segment) {
+    for (std::size_t p = 0; p < segment.size();) {
+      const unsigned kind = value(segment[p]);
+      quantisation_.set(kind & 15);
+      p += 1 + (kind >> 4 ? 128 : 64);
+    }
+  }
+  void read_frame(ByteView segment, bool progressive) {
+    progressive_ = progressive;
+    for (std::size_t p = 6; p + 3 <= segment.size(); p += 3)
+      table_of_component_[value(segment[p])] = value(segment[p + 2]) & 15;
+  }
+  void check_scan(ByteView segment) const {
+    if (segment.empty()) return;
+    const std::size_t components = value(segment[0]), last = 1 + 2 * components;
+    if (segment.size() < last + 3) return;  // stb refuses it
+    const bool begins_at_dc = value(segment[last]) == 0, refines = value(segment[last + 2]) >> 4 != 0;
+    for (std::size_t p = 1; p < last; p += 2) {
+      const unsigned tables = value(segment[p + 1]);
+      const bool needs_dc = !progressive_ || (begins_at_dc && !refines), needs_ac = !progressive_ || !begins_at_dc;
+      const auto quantisation = table_of_component_.find(value(segment[p]));
+      if ((needs_dc && !huffman_[0].test(tables >> 4)) || (needs_ac && !huffman_[1].test(tables & 15)) ||
+          (quantisation != table_of_component_.end() && !quantisation_.test(quantisation->second)))
+        throw Damaged("it uses a table that it does not have");
+    }
+  }
+
+  ByteView bytes_;
+  std::array<std::bitset<16>, 2> huffman_;  // of DC and of AC coefficients
+  std::bitset<16> quantisation_;
+  std::map<unsigned, unsigned> table_of_component_;
+  bool progressive_ = false;
+};
 
 Image read_jpeg(ByteView bytes, std::int64_t max_pixels) {
   if (bytes.size() > 0x7fffffff) throw Damaged("it is larger than 2 GB");
-  if (count_scans(bytes) > max_jpeg_scans) throw Damaged("it is drawn in more than 100 passes");
+  JpegScans(bytes).check();
   const auto* const data = reinterpret_cast<const stbi_uc*>(bytes.data());
   const int size = static_cast<int>(bytes.size());
   int width = 0, height = 0, channels = 0;

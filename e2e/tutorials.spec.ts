@@ -76,9 +76,13 @@ test('by keyboard, from Help, left in the middle: nothing of it is in the projec
   const dialog = page.getByRole('dialog', { name: 'Learn' });
   await dialog.getByRole('button', { name: /^A relief of a head/ }).focus();
   await page.keyboard.press('Enter');
-  // The dialog gives the focus back to Help as it closes; then the card has it.
+  // The dialog gives the focus back to Help as it closes; a moment later the card has it for good.
   await expect(dialog).toBeHidden();
-  await expect(learnCard(page)).toBeFocused();
+  await expect(async () => {
+    await expect(learnCard(page)).toBeFocused();
+    await page.waitForTimeout(300);
+    await expect(learnCard(page)).toBeFocused({ timeout: 100 });
+  }).toPass();
   await expect(page.getByRole('button', { name: /^Nothing to undo/ })).toBeVisible();
   await page.keyboard.press('Tab'); // Leave
   await page.keyboard.press('Tab');

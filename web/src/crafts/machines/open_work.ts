@@ -101,7 +101,7 @@ export async function takeWork(room: MachinesRoom, opened: OpenedFile): Promise<
   return true;
 }
 
-/** What is opened before the solver has told what it can do waits for that. Null: it never will. */
+/** What is opened before the catalog is there waits for it. Null: it could not be read. */
 async function catalogWhenThere(services: Services): Promise<Catalog | null> {
   const { catalog, catalogError } = services;
   return await new Promise((resolve) => {

@@ -194,12 +194,16 @@ export interface Hit {
 export type ViewPointerEvent = {
   kind: 'move' | 'down' | 'up' | 'click' | 'leave';
   hit: Hit | null;
+  /** Pointer, CSS pixels from the viewport's upper left corner, also where nothing is hit; on 'leave' NaN. */
+  xPx: number;
+  yPx: number;
   /** 0 main, 1 middle, 2 secondary, −1 none. */
   button: number;
   shiftKey: boolean;
   ctrlKey: boolean;
-  /** Keep the camera still for this press (drawing a loop, dragging a point). Only on 'down'. */
-  capture(): void;
+  /** Keep the camera still for this press (drawing a loop, dragging a point). Only on 'down'. With `onLost` a second
+   *  finger takes the press away and moves the picture; it is called then, and where the browser ends the press. */
+  capture(onLost?: () => void): void;
 };
 
 export interface FrameStats {

@@ -2,8 +2,8 @@
 // Hand and keyboard on the viewport: orbit, pan, zoom. Says what is wanted; the viewport does it.
 
 export interface ControlTarget {
-  /** A press begins; true keeps the camera still (something is being drawn or dragged). */
-  press(event: PointerEvent): boolean;
+  /** A press begins; true keeps the camera still (something is being drawn or dragged), a function until it is called. */
+  press(event: PointerEvent): boolean | (() => void);
   /** The point about which this press will turn. */
   beginOrbit(event: PointerEvent): void;
   orbitBy(azimuth: number, elevation: number): void;
@@ -28,6 +28,8 @@ type Held = { x: number; y: number };
 export class Controls {
   private readonly held = new Map<number, Held>();
   private action: 'none' | 'orbit' | 'pan' | 'kept' = 'none';
+  /** To be told when a kept press is taken away; null: it cannot be. */
+  private lost: (() => void) | null = null;
   private travelled = 0;
   private rate: [number, number] = [0, 0];
   private lastMove = 0;
@@ -70,12 +72,16 @@ export class Controls {
     this.held.set(event.pointerId, this.local(event));
     this.canvas.setPointerCapture(event.pointerId);
     if (this.held.size > 1) {
-      if (this.action !== 'kept') this.action = 'pan';
+      const moves = this.action !== 'kept' || this.lost !== null;
+      this.takeAway();
+      if (moves) this.action = 'pan';
       return;
     }
     this.travelled = 0;
     this.rate = [0, 0];
-    if (this.target.press(event)) this.action = 'kept';
+    const kept = this.target.press(event);
+    this.lost = typeof kept === 'function' ? kept : null;
+    if (kept) this.action = 'kept';
     else if (event.button === 0 && !event.shiftKey) {
       this.action = 'orbit';
       this.target.beginOrbit(event);
@@ -126,12 +132,19 @@ export class Controls {
     if (!this.held.delete(event.pointerId)) return;
     if (this.held.size > 0) return;
     const clicked = event.type === 'pointerup' && this.travelled <= CLICK_SLOP_PX;
+    if (event.type === 'pointercancel') this.takeAway();
+    this.lost = null;
     const resting = event.timeStamp - this.lastMove > 60;
     if (this.action === 'orbit' && !clicked && !resting) this.target.coast(...this.rate);
     this.action = 'none';
     this.target.dragging(false);
     this.target.release(event, clicked);
   };
+
+  private takeAway(): void {
+    this.lost?.();
+    this.lost = null;
+  }
 
   private readonly leave = (): void => {
     if (this.held.size === 0) this.target.leave();

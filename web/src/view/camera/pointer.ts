@@ -27,8 +27,8 @@ export class PointerReports {
     const { rig } = client;
     return {
       press: (event) => {
-        let kept = false;
-        this.report('down', event, () => (kept = true));
+        let kept: boolean | (() => void) = false;
+        this.report('down', event, (onLost) => (kept = onLost ?? true));
         return kept;
       },
       beginOrbit: (event) => rig.setPivot(client.pick(...this.local(event))?.positionMm ?? null),
@@ -49,6 +49,8 @@ export class PointerReports {
         client.onPointer({
           kind: 'leave',
           hit: null,
+          xPx: NaN,
+          yPx: NaN,
           button: -1,
           shiftKey: false,
           ctrlKey: false,
@@ -87,12 +89,13 @@ export class PointerReports {
   private report(
     kind: 'move' | 'down' | 'up' | 'click',
     event: PointerEvent,
-    capture: () => void = () => undefined,
+    capture: ViewPointerEvent['capture'] = () => undefined,
   ): Hit | null {
     if (!this.client.wanted()) return null;
-    const hit = this.client.pick(...this.local(event));
+    const [xPx, yPx] = this.local(event);
+    const hit = this.client.pick(xPx, yPx);
     const { button, shiftKey, ctrlKey } = event;
-    this.client.onPointer({ kind, hit, button, shiftKey, ctrlKey, capture });
+    this.client.onPointer({ kind, hit, xPx, yPx, button, shiftKey, ctrlKey, capture });
     return hit;
   }
 }

@@ -12,6 +12,7 @@ import { figure } from '../../shared/session/report';
 import { fromShown, place as drawAt, tool } from './drawing/draw_actions';
 import { bentPositions, keepDrawn } from './drawing/draw_scene';
 import { DrawTool } from './drawing/draw_tool';
+import { ringPointer } from './drawing/ring';
 import { Play } from './ribbon/play';
 import { alongAt, placeInSpace } from './ribbon/ribbon_places';
 import {
@@ -62,8 +63,11 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
       dimensions: false,
       ground: true,
       onViewpointChange: () => ++cameraMoves.value,
-      onPointer: ({ kind, hit }) => {
-        if (kind === 'click' && hit && tool.peek()) void drawAt(session, fromShown(session, hit.positionMm));
+      onPointer: (event) => {
+        const { kind, hit } = event;
+        if (tool.peek() === 'ring') ringPointer(session, made, event);
+        else if (kind === 'click' && hit && tool.peek())
+          void drawAt(session, fromShown(session, hit.positionMm));
         if (kind !== 'move' && kind !== 'leave') return;
         const shown = session.shown.peek();
         if (shown === null || hit === null || kind === 'leave' || playing.peek()) {

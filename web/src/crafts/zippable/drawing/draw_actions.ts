@@ -12,6 +12,7 @@ import {
   segmentsJson,
   withCutPoint,
   without,
+  withBorder,
   withOpening,
   withPoint,
 } from './drawn_parts';
@@ -19,7 +20,7 @@ import { SurfaceGraph } from './surface_path';
 import { drawnOn, setDrawn } from '../zippable_document';
 import type { ZippableSession } from '../zippable_session';
 
-export type Tool = 'border' | 'opening' | 'cut';
+export type Tool = 'border' | 'ring' | 'opening' | 'cut';
 
 /** Null: nothing is being drawn. Outlives a visit to another page. */
 export const tool = signal<Tool | null>(null);
@@ -77,6 +78,8 @@ export function press(session: ZippableSession, handle: Handle): void {
 
 export const closeBorder = (session: ZippableSession) =>
   change(session, closedNow(now(session)), 'Close a border');
+export const addRing = (session: ZippableSession, points: readonly Place3[]) =>
+  change(session, withBorder(now(session), points), 'Draw a ring');
 export const endCut = (session: ZippableSession) => change(session, cutDone(now(session)), 'End a cut');
 export const startOver = (session: ZippableSession) =>
   change(session, nothingDrawn, 'Find the parts automatically');
@@ -111,15 +114,19 @@ export function takeFound(session: ZippableSession): Promise<void> {
 
 let graph: { readonly of: ShadedMesh; readonly graph: SurfaceGraph } | null = null;
 
+/** The ways over a mesh, kept until another one is asked for. */
+export function waysOn(mesh: ShadedMesh): SurfaceGraph {
+  if (graph?.of !== mesh) graph = { of: mesh, graph: new SurfaceGraph(mesh.positions, mesh.indices) };
+  return graph.graph;
+}
+
 /** Borders and cuts as they will run, mm as shown; the last is the one that is not whole. */
 export function drawnLines(session: ZippableSession): Float32Array[] {
   const original = session.model.original.value;
   if (original === null) return [];
   const { borders, cuts, begun, begunCut } = drawnNow(session);
   if (borders.length + cuts.length + begun.length + begunCut.length === 0) return [];
-  const { mesh } = original;
-  if (graph?.of !== mesh) graph = { of: mesh, graph: new SurfaceGraph(mesh.positions, mesh.indices) };
-  const on = graph.graph;
+  const on = waysOn(original.mesh);
   const scale = shownScale(session);
   const open = (points: readonly Place3[]) => ({ points, closed: false });
   const unfinished = begun.length > 0 && begunCut.length > 0 ? [begun, begunCut] : [[...begun, ...begunCut]];

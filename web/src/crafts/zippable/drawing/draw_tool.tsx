@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Over the model while parts are drawn: the tools, and a handle on every point.
 import { useEffect } from 'preact/hooks';
-import { Button, Segmented } from '../../../ui';
+import { Button, Icon, Segmented } from '../../../ui';
 import type { Viewport } from '../../../view';
 import type { Tool } from './draw_actions';
 import {
@@ -21,6 +21,8 @@ import {
 } from './draw_actions';
 import type { Drawn, Handle } from './drawn_parts';
 import { fewestToClose, fewestToCut, handleName, handlesOf, placeOf } from './drawn_parts';
+import { noRing, ringInTheMiddle } from './ring';
+import { RingLine } from './ring_line';
 import { cameraMoves, themeChanges } from '../views';
 import type { ZippableSession } from '../zippable_session';
 
@@ -31,6 +33,7 @@ interface ToolProps {
 
 const tools: readonly { readonly value: Tool; readonly label: string }[] = [
   { value: 'border', label: 'Border' },
+  { value: 'ring', label: 'Ring' },
   { value: 'opening', label: 'Opening' },
   { value: 'cut', label: 'Cut' },
 ];
@@ -45,12 +48,18 @@ export function DrawTool({ session, viewport }: ToolProps) {
   return (
     <>
       <Handles session={session} viewport={viewport} />
+      {tool.value === 'ring' ? <RingLine /> : null}
       <Toolbar session={session} viewport={viewport} />
     </>
   );
 }
 
 function wordsFor(what: Tool, { begun, begunCut }: Drawn): string {
+  if (what === 'ring')
+    return (
+      noRing.value ??
+      'Drag a line straight across a limb: a border goes all around it. Arrow keys or another tool turn the model.'
+    );
   if (what === 'opening')
     return 'Click where a part should have an opening. A part without one gets one automatically.';
   if (what === 'cut')
@@ -66,6 +75,10 @@ function Toolbar({ session, viewport }: { session: ZippableSession; viewport: Vi
   const drawn = drawnNow(session);
   const drawing = tool.value === 'border';
   const cutting = tool.value === 'cut';
+  const ringing = tool.value === 'ring';
+  const refused = ringing && noRing.value !== null;
+  // A phone has no room for words; but that a drag draws here has to be said once.
+  const onPhones = refused || (ringing && drawn.borders.length === 0);
   const left = fewestToClose - drawn.begun.length;
   const nothing =
     drawn.borders.length +
@@ -96,7 +109,9 @@ function Toolbar({ session, viewport }: { session: ZippableSession; viewport: Vi
         </Button>
       </div>
       <div class="panel draw-words">
-        <p>{wordsFor(tool.value ?? 'border', drawn)}</p>
+        <p class={`${onPhones ? 'on-phones' : ''} ${refused ? 'draw-refusal' : ''}`} role="status">
+          {refused ? <Icon name="warn" small /> : null} {wordsFor(tool.value ?? 'border', drawn)}
+        </p>
         <div class="row">
           {drawing && drawn.begun.length > 0 ? (
             <Button
@@ -125,9 +140,21 @@ function Toolbar({ session, viewport }: { session: ZippableSession; viewport: Vi
               Move the openings found
             </Button>
           ) : null}
-          <Button size="small" icon="plus" onClick={addInTheMiddle}>
-            Add a point in the middle
-          </Button>
+          {ringing ? (
+            <div class="row" role="group" aria-labelledby="ring-in-the-middle">
+              <span id="ring-in-the-middle">Ring in the middle:</span>
+              <Button size="small" onClick={() => void ringInTheMiddle(session, viewport, 'level')}>
+                Level
+              </Button>
+              <Button size="small" onClick={() => void ringInTheMiddle(session, viewport, 'upright')}>
+                Upright
+              </Button>
+            </div>
+          ) : (
+            <Button size="small" icon="plus" onClick={addInTheMiddle}>
+              Add a point in the middle
+            </Button>
+          )}
           {nothing ? null : (
             <Button size="small" kind="quiet" onClick={() => void startOver(session)}>
               Find the parts automatically

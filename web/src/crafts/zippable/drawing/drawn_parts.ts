@@ -149,6 +149,12 @@ export function closedNow(drawn: Drawn): Drawn {
   return { ...drawn, borders: [...drawn.borders, { points: drawn.begun, closed: true }], begun: [] };
 }
 
+/** A closed border that came at once, beside one that has been begun. */
+export const withBorder = (drawn: Drawn, points: readonly Place3[]): Drawn => ({
+  ...drawn,
+  borders: [...drawn.borders, { points, closed: true }],
+});
+
 /** segments.json; null where it would say nothing. */
 export function segmentsJson({ borders, openings, cuts }: Drawn): string | null {
   if (borders.length + openings.length + cuts.length === 0) return null;

@@ -230,6 +230,83 @@ test('parts drawn by hand: a border and a cut with the mouse, an opening moved w
   await expect(parts).toHaveCount(3);
 });
 
+test('a border around a limb by one line across it: pointer, two fingers, keyboard', async ({ page }) => {
+  await openSample(page, 'Star');
+  await page.getByRole('button', { name: 'Draw the parts' }).click();
+  await page.getByRole('radio', { name: 'Ring' }).click();
+  const pane = page.locator('.zippable-model');
+  const box = await pane.boundingBox();
+  if (box === null) throw new Error('The model is not to be seen.');
+  const at = (x: number, y: number) => [box.x + x * box.width, box.y + y * box.height] as const;
+  const line = pane.locator('.ring-line line').first();
+  const drag = async (from: readonly [number, number], to: readonly [number, number]) => {
+    await page.mouse.move(...at(...from));
+    await page.mouse.down();
+    await page.mouse.move(...at(...to), { steps: 5 });
+    await expect(line).toBeVisible();
+    await page.mouse.up();
+    await expect(line).toHaveCount(0);
+  };
+  const points = (border: number) =>
+    page.getByRole('button', { name: new RegExp(`^Point \\d+ of border ${border}$`) });
+
+  // What makes no border says so.
+  await drag([0.05, 0.9], [0.2, 0.85]);
+  await expect(page.getByText('The line does not cross the model.')).toBeVisible();
+  await page.mouse.click(...at(0.5, 0.5));
+  await expect(page.getByText('That was no line')).toBeVisible();
+  await expect(page.getByText('The parts were found automatically')).toBeVisible();
+
+  await drag([0.28, 0.36], [0.72, 0.46]);
+  await expect(page.getByText('Drawn by hand: 1 border')).toBeVisible();
+  await expect(page.getByRole('list', { name: 'Parts' }).getByRole('button')).toHaveCount(2);
+  await expect(strip(page, 'Preview up to date')).toBeVisible();
+  expect(await points(1).count()).toBeGreaterThanOrEqual(3);
+  expect(await points(1).count()).toBeLessThanOrEqual(24);
+  await expectAccessible(page, 'ring');
+
+  // A second one, whose line begins on the model, has not turned it; and it is one step to undo.
+  const first = points(1).first();
+  const before = (await first.getAttribute('style')) ?? '';
+  await drag([0.66, 0.6], [0.76, 0.4]);
+  await expect(page.getByText('Drawn by hand: 2 borders')).toBeVisible();
+  await expect(first).toHaveAttribute('style', before);
+  await page.getByRole('button', { name: 'Undo: Draw a ring' }).click();
+  await expect(page.getByText('Drawn by hand: 1 border', { exact: true })).toBeVisible();
+
+  // Two fingers move the picture: the line that one of them had begun is given up.
+  const touch = await page.context().newCDPSession(page);
+  const fingers = async (
+    type: 'touchStart' | 'touchMove' | 'touchEnd',
+    ...places: readonly (readonly [number, number])[]
+  ) => {
+    const touchPoints = places.map((place, id) => ({ x: at(...place)[0], y: at(...place)[1], id }));
+    await touch.send('Input.dispatchTouchEvent', { type, touchPoints });
+  };
+  await fingers('touchStart', [0.2, 0.4]);
+  await fingers('touchMove', [0.3, 0.42]);
+  await expect(line).toBeVisible();
+  await fingers('touchStart', [0.3, 0.42], [0.6, 0.4]);
+  await expect(line).toHaveCount(0);
+  for (const y of [0.44, 0.48, 0.52]) await fingers('touchMove', [0.3, y], [0.6, y]);
+  await fingers('touchEnd');
+  await expect(first).not.toHaveAttribute('style', before);
+  await expect(page.getByText('Drawn by hand: 1 border', { exact: true })).toBeVisible();
+
+  // Its points can be moved like any other border's; without pointing there is a ring in the middle.
+  await first.focus();
+  await page.keyboard.press('Shift+ArrowDown');
+  await expect(page.getByRole('button', { name: 'Undo: Move a point' })).toBeVisible();
+  await page.getByRole('button', { name: 'Find the parts automatically' }).click();
+  await expect(page.getByText('The parts were found automatically')).toBeVisible();
+  const middle = page.getByRole('group', { name: 'Ring in the middle' });
+  for (const [i, way] of (['Level', 'Upright'] as const).entries()) {
+    await middle.getByRole('button', { name: way }).focus();
+    await page.keyboard.press('Enter');
+    await expect(page.getByText(`Drawn by hand: ${i + 1} border`)).toBeVisible();
+  }
+});
+
 test('axe finds nothing serious in the room', { tag: '@screens' }, async ({ page }) => {
   test.skip(backend === 'native', 'the worker serves the same page');
   await openRoom(page);

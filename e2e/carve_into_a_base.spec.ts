@@ -29,19 +29,13 @@ test('a V groove is carved on a practice mill', async ({ page }) => {
   await expect(page.locator('.profile-button')).toHaveText('Practice mill');
   // From 2 mm below the bottom of the groove to 1 mm above the plate.
   await expect(field('Depth')).toHaveValue('11.0');
-  await page.getByRole('button', { name: 'Make the job', exact: true }).click();
   await expect(strip(page, 'Job ready')).toBeVisible({ timeout: 150_000 });
   await expect(page.getByRole('region', { name: 'What is carved' })).toContainText(
     /Size40\.0 × 40\.0 × ([89]|10|11)\.\d\d?\smm/,
   );
   await makeMillReady(page);
   await startButton(page).click();
-  await dialog(page)
-    .getByRole('radio', { name: /^Set z to the stock’s top here/ })
-    .check();
-  await dialog(page)
-    .getByRole('button', { name: /^Start with the spindle on/ })
-    .click();
+  await dialog(page).getByRole('button', { name: 'Set z here and start the spindle' }).click();
   await expect(chip(page)).toHaveText('Working');
   await page.getByRole('radio', { name: 'Fastest', exact: true }).click();
   await expect(strip(page, / is done$/)).toBeVisible({ timeout: 150_000 });

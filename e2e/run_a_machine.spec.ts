@@ -192,8 +192,7 @@ test('a relief goes to a mill: its job, its way in space, its first lines', asyn
   await expect(page.locator('.profile-button')).toHaveText('Practice mill');
   await expect(page.getByRole('textbox', { name: 'Width', exact: true })).toHaveValue('40');
   await expect(page.getByRole('textbox', { name: 'Depth', exact: true })).toHaveValue('5.0');
-  await expect(strip(page, 'No job yet')).toBeVisible();
-  await button(page, 'Make the job').click();
+  // Sent here, its job is made at once.
   await expect(strip(page, 'Job ready')).toBeVisible({ timeout: 150_000 });
   const figures = page.getByRole('region', { name: 'What is carved' });
   await expect(figures).toContainText('Mean deviation');
@@ -216,11 +215,14 @@ test('a relief goes to a mill: its job, its way in space, its first lines', asyn
 
   await makeMillReady(page);
   await button(page, 'Set z here').click();
-  // Two tools are two jobs, with z set between them.
+  // Two tools are two jobs, with z set between them: z of the tool before cannot be kept.
   const jobs = page.getByRole('region', { name: 'Jobs, in order' });
   await jobs.getByRole('button', { name: 'Run this job next' }).click();
-  await expect(jobs).toContainText('next, once z is set');
-  await expect(startButton(page)).toHaveAttribute('aria-disabled', 'true');
+  await startButton(page).click();
+  await expect(dialog(page).getByText(/^The finishing tool is mounted, and its tip touches/)).toBeVisible();
+  await expect(dialog(page).getByRole('button', { name: 'Set z here and start the spindle' })).toBeVisible();
+  await expect(dialog(page).getByRole('radio')).toHaveCount(0);
+  await dialog(page).getByRole('button', { name: 'Cancel' }).click();
   await jobs.getByRole('button', { name: 'Run this job next' }).click();
   await button(page, 'Set z here').click();
   // Nothing is chosen in advance, and nothing starts before somebody has said where z is 0.

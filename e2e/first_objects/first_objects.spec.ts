@@ -208,7 +208,6 @@ test('mill', async ({ page, counter }) => {
   await expect(strip(page, 'Relief ready')).toBeVisible();
   await counter.begin();
   await button(page, 'Send to a machine').click();
-  await button(page, 'Make the job').click();
   await expect(strip(page, 'Job ready')).toBeVisible();
   await button(page, 'Practise the job').click();
   await page.getByRole('dialog').getByRole('button', { name: 'Home', exact: true }).click();
@@ -220,15 +219,9 @@ test('mill', async ({ page, counter }) => {
   await expect(height).toHaveText(/^−[1-9]\d\.\d\d$/);
   await page.mouse.up();
   await expect(page.locator('.state-chip')).toHaveText('Ready');
-  for (const [tool, done] of [
-    ['roughing', /^ball, roughing is done$/],
-    ['finishing', /^ball, finishing is done$/],
-  ] as const) {
-    if (tool === 'finishing') await button(page, 'Set z here').click();
+  for (const done of [/^ball, roughing is done$/, /^ball, finishing is done$/]) {
     await startButton(page).click();
-    const dialog = page.getByRole('dialog');
-    await dialog.getByText(/^Set z to the stock’s top here/).click();
-    await dialog.getByRole('button', { name: 'Start with the spindle on' }).click();
+    await page.getByRole('dialog').getByRole('button', { name: 'Set z here and start the spindle' }).click();
     await expect(strip(page, done)).toBeVisible();
   }
   await recordRow('mill', counter);

@@ -4,6 +4,7 @@ import { signal, useSignal } from '@preact/signals';
 import { useEffect, useRef } from 'preact/hooks';
 import type { PrintDialog as PrintDialogComponent } from '../shared/print/print_dialog';
 import { toPrint, toSlice } from '../shared/print/print_request';
+import { solveInFull } from '../shared/session/full_solve';
 import type { Services } from '../shared/session/services';
 import type { SliceDialog as SliceDialogComponent } from '../shared/print/slice_dialog';
 import type { EvidencePage as EvidencePageComponent } from '../crafts/evidence/evidence_page';
@@ -168,6 +169,7 @@ export function App({ services, sessions }: AppProps) {
           onSendToMill={async (name, heightMap, size) => {
             const taken = await sessions.machines.take(name, heightMap, 'model', size);
             if (taken || sessions.machines.problem.value !== null) go('machines');
+            if (taken) void solveInFull(sessions.machines); // sending it asks for its job
           }}
         />
       ) : where === 'thermoform' && ThermoformPage ? (

@@ -3,7 +3,7 @@ import { signal } from '@preact/signals';
 import { expect, it } from 'vitest';
 import type { MachineCommand, MachineState } from '../../machines/links/machine_state';
 import { practiceLaser } from '../../machines/profiles';
-import { offersPractice, practiceReason, practiseTheJob, startReason, zOptions } from './actions';
+import { isZHere, offersPractice, practiceReason, practiseTheJob, startReason, zOptions } from './actions';
 import { isAsking } from './panel/confirm';
 import type { MachinesSession } from './machines_session';
 
@@ -17,7 +17,13 @@ const idle: Pick<MachineState, 'phase' | 'position_known' | 'axes_known' | 'can'
 /** A room whose job is made and whose machine is connected. */
 const room = (tool: 'laser' | 'mill', state: object): MachinesSession =>
   ({
-    control: { state: { value: state }, isBusy: false },
+    control: {
+      state: { value: state },
+      isBusy: false,
+      practising: { value: false },
+      zSets: { value: 0 },
+      loaded: { value: 'job' },
+    },
     plan: { value: { misfits: [], jobs: [] } },
     job: { value: { stage: '', bytes: new Uint8Array(1) } },
     needsZ: false,
@@ -54,6 +60,27 @@ it('a mill’s start asks where z is 0, and says where and when it was set', () 
     /at 0\.00\u2009mm .*set before the machine was connected/,
   );
   expect(labels({ origin_machine_mm: null, set_seconds_ago: 1 })?.[1]).toMatch(/Keep z 0 where it was set/);
+});
+
+it('z is set at the tip after a change of tools; on a real machine z that was never set here is asked about', () => {
+  const asks = { ...idle, z_choice: { origin_machine_mm: -12.5, set_seconds_ago: null } };
+  const known = { ...asks, axes_known: { x: true, y: true, z: true } };
+  const changed = { ...room('mill', known), needsZ: true } as unknown as MachinesSession;
+  expect(isZHere(room('mill', known))).toBe(false);
+  expect(isZHere(changed)).toBe(true);
+  expect(startReason(changed)).toBeUndefined();
+  // A driver that does not ask about z sets none at the start.
+  const silent = {
+    ...room('mill', { ...known, z_choice: null }),
+    needsZ: true,
+  } as unknown as MachinesSession;
+  expect(isZHere(silent)).toBe(false);
+  expect(startReason(silent)).toMatch(/set z here/);
+  const practice = room('mill', known);
+  Object.assign(practice.control, { practising: { value: true } });
+  expect(isZHere(practice)).toBe(true);
+  Object.assign(practice.control, { zSets: { value: 1 } });
+  expect(isZHere(practice)).toBe(false);
 });
 
 /** A room with a practice machine that is to be connected, and the commands that it got. */

@@ -78,7 +78,8 @@ export function startReason(session: MachinesSession): string | undefined {
     return state.can.includes('home')
       ? 'The position of the head is unknown: home the machine first'
       : 'The position of the head is unknown: jog to the corner and set the origin';
-  if (session.needsZ)
+  // What a driver asks at the start it knows once it has the job.
+  if (session.needsZ && control.loaded.value !== null && !state.z_choice)
     return `Mount the ${toolWords(session)} tool, lower its tip to the stock and set z here`;
   if (session.isMill && !state.axes_known.z)
     return 'The height of the tool’s tip is unknown: lower it to the top of the stock and set z';
@@ -111,10 +112,24 @@ export function zOptions(state: MachineState | null, now: Date): readonly Option
   ];
 }
 
-const zQuestion = (session: MachinesSession): Choice<ZChoice> => ({
+/** Is the tip's place now the only one that z 0 can have? After a change of tools, and on a practice machine that knows no other. */
+export function isZHere(session: MachinesSession): boolean {
+  const { control } = session;
+  const untouched = control.practising.value && control.zSets.value === 0;
+  return (control.state.value?.z_choice ?? null) !== null && (session.needsZ || untouched);
+}
+
+/** `hasOne`: that there is only one answer, which the action's own name says. */
+const zQuestion = (session: MachinesSession, hasOne: () => boolean): Choice<ZChoice> => ({
   legend: 'Where is z 0?',
-  options: () => zOptions(session.control.state.value, new Date()),
+  options: () => (hasOne() ? null : zOptions(session.control.state.value, new Date())),
 });
+
+/** "The finishing tool is mounted, and its tip touches the top of the stock: z becomes 0 there." */
+function zIsHere(session: MachinesSession): string {
+  const words = toolWords(session);
+  return `The ${words ? `${words} tool is mounted, and its tip` : 'tip of the tool'} touches the top of the stock: z becomes 0 there.`;
+}
 
 /** The machine has the job before the question: only then it can say what it does with it. */
 export async function start(session: MachinesSession): Promise<void> {
@@ -133,12 +148,19 @@ export async function start(session: MachinesSession): Promise<void> {
         ? `The head moves and the laser turns on, at up to ${withUnit(formatNumber(power, 2), '%')}, for about ${formatDuration(seconds)}.`
         : `The machine moves and its spindle turns, for about ${formatDuration(seconds)}. X and y are 0 at the stock's corner, z on its top.`,
       isLaser(session) ? eyes : chips,
+      ...(isZHere(session) ? [zIsHere(session)] : []),
       ...whenLeftAlone(session),
     ],
-    choice: zQuestion(session),
-    action: isLaser(session) ? 'Start with the laser on' : 'Start with the spindle on',
+    choice: zQuestion(session, () => isZHere(session)),
+    action: () =>
+      isLaser(session)
+        ? 'Start with the laser on'
+        : isZHere(session)
+          ? 'Set z here and start the spindle'
+          : 'Start with the spindle on',
     danger: true,
-    run: (z) => {
+    run: (chosen) => {
+      const z = isZHere(session) ? 'here' : chosen;
       session.playhead.value = null;
       void session.control.start(name, key, job.bytes, z === null ? {} : { z });
     },
@@ -163,7 +185,7 @@ export async function goOn(session: MachinesSession): Promise<void> {
         (isLaser(session) ? eyes : chips),
       ...whenLeftAlone(session),
     ],
-    choice: zQuestion(session),
+    choice: zQuestion(session, () => false),
     action: isLaser(session) ? 'Continue with the laser on' : 'Continue with the spindle on',
     danger: true,
     run: (z) =>

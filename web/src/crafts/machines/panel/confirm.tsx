@@ -21,7 +21,7 @@ interface Question<Value extends string> {
   /** What will move, and whether the laser will be on. Asked anew whenever what they read changes. */
   readonly sentences: readonly string[] | (() => readonly string[]);
   readonly choice?: Choice<Value>;
-  readonly action: string;
+  readonly action: string | (() => string);
   readonly danger?: boolean;
   /** Null where nothing was to be chosen. */
   readonly run: (chosen: Value | null) => void;
@@ -85,7 +85,7 @@ function Act({ question, close }: { readonly question: Question<string>; readonl
         question.run(choice);
       }}
     >
-      {question.action}
+      {typeof question.action === 'function' ? question.action() : question.action}
     </Button>
   );
 }

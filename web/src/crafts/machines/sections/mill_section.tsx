@@ -66,11 +66,11 @@ export function MillJobs({ session }: { readonly session: MachinesSession }) {
         {jobs.map(({ stage }, index) => (
           <li key={stage} aria-current={index === next ? 'step' : undefined}>
             {index > 0 ? (
-              <p class="hint">Change the tool, lower its tip onto the stock, then set z here.</p>
+              <p class="hint">Change the tool and lower its tip onto the stock. Start then sets z there.</p>
             ) : null}
             <span>{stage === 'rough' ? 'Roughing' : 'Finishing'}</span>
             {index === next ? (
-              <em>{index > 0 && session.needsZ ? 'next, once z is set' : 'next'}</em>
+              <em>next</em>
             ) : (
               <Button
                 size="small"

@@ -43,9 +43,7 @@ function clampOf(session: ThermoformSession, formed: Formed): Clamp {
 }
 
 /** Attributes and picture of the sheet as it is in the end. */
-function sheetData(formed: Formed, extras: Extras | null): MeshData {
-  const { sheet } = formed;
-  const printed = extras?.printed?.of === formed ? extras.printed : null;
+function sheetData({ sheet }: Formed, printed: Extras['printed']): MeshData {
   return {
     positions: sheet.positions,
     indices: sheet.indices,
@@ -55,6 +53,13 @@ function sheetData(formed: Formed, extras: Extras | null): MeshData {
       : { colours: Float32Array.from(sheet.positions, (_, i) => plastic[(i % 3) as 0 | 1 | 2]) }),
   };
 }
+
+/** May the picture of one sheet be seen on another until that has its own? A preview's, of the same model and triangles. */
+export const servesMeanwhile = (printed: Extras['printed'], on: Formed): boolean =>
+  printed !== null &&
+  on.kind === 'preview' &&
+  printed.of.from === on.from &&
+  printed.of.sheet.positions.length === on.sheet.positions.length;
 
 interface DrawnModel {
   readonly from: string;
@@ -75,6 +80,7 @@ export function keepDrawn(
   alone: () => boolean,
 ): () => void {
   let drawn: { formed: Formed; printed: unknown } | null = null;
+  let lastPrinted: Extras['printed'] = null;
   let model: DrawnModel | null = null;
   let stretching: Stretching | null = null;
   let lift = 0;
@@ -137,9 +143,12 @@ export function keepDrawn(
       drawn = null;
       return;
     }
-    const printed = view.value === 'texture' ? extras().printed : null;
+    const own = extras().printed?.of === shown ? extras().printed : null;
+    // Plain plastic between two pictures would flicker while a slider moves.
+    lastPrinted = own ?? (session.hasColours.value && servesMeanwhile(lastPrinted, shown) ? lastPrinted : null);
+    const printed = view.value === 'texture' ? lastPrinted : null;
     if (drawn?.formed === shown && drawn.printed === printed) return;
-    viewport.setRelief(sheetData(shown, printed ? extras() : null), null);
+    viewport.setRelief(sheetData(shown, printed), null);
     stretching = new Stretching(shown.film);
     drawn = { formed: shown, printed };
     drawMoment();

@@ -113,11 +113,13 @@ run_ctest() {  # preset, folder of its build
 
 main() {
   stage 'set-up' - setup/all.sh --test
-  stage 'C++ formatting' - setup/format.sh --check
   stage 'page: packages' - setup/build.sh npm-packages
+  begin_beside setup/build.sh native
+  stage 'C++ formatting' - setup/format.sh --check
   stage 'page: types' - npm run types
   stage 'page: lint' - npm run lint
-  stage 'native build' - setup/build.sh native
+  await_beside
+  stage 'native build' - show_beside
   begin_beside setup/build.sh wasm
   stage 'native tests' ctest run_ctest native build
   await_beside

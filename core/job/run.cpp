@@ -10,6 +10,7 @@
 #include "geometry/samples/samples.h"
 #include "job/catalog.h"
 #include "job/made_by.h"
+#include "job/progress/alike_runs.h"
 #include "job/progress/timed_host.h"
 
 namespace formwright {
@@ -179,7 +180,7 @@ JobResult run_job(const Json& message, const BlobSource& blobs, Session& session
   JobResult result;
   result.error = caught([&] {
     const Operation& operation = operation_of(message);
-    TimedHost timed(host, operation.name, session);
+    TimedHost timed(host, alike_runs(operation, parameters_of(message)), session);
     Context context(timed.host());
     std::map<std::string, InputBlob> inputs = read_inputs(operation, message);
     const std::vector<std::string> wanted = read_wanted(operation, message);

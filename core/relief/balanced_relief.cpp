@@ -20,6 +20,8 @@ constexpr double box_share = 0.02;       // of the way between two bounds: how f
 constexpr double min_width = 1e-6;       // of the thickness, between two bounds: a barrier needs room
 constexpr double first_decrease = 3e-3;
 constexpr int max_rounds = 3, later_steps = 6;
+/// Of the fractions that are reported: a later round takes few steps.
+constexpr double later_share = 0.15;
 // Later rounds start near their end.
 constexpr double later_beta = 4, later_gap = 30;  // times the last ones
 
@@ -128,8 +130,8 @@ BalancedResult balanced_relief(BalancedSolver& solver, const SlabProblem& proble
   now.decrease = std::max(settings.decrease, first_decrease);
   int steps = 0;
   for (int round = 0; round < max_rounds; ++round) {
-    const auto span =
-        context.span(static_cast<double>(round) / max_rounds, (round + 1.0) / max_rounds, "Restoring broad forms");
+    const auto begin = [](int of) { return of == 0 ? 0 : 1 - later_share * (max_rounds - of); };
+    const auto span = context.span(begin(round), begin(round + 1), "Restoring broad forms");
     BalancedResult found = solver.solve(point, energy_unit, lower, upper, now, context);
     steps += found.steps;
     const bool broken = separate_broken(problem, found.u, kind);

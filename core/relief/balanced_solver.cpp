@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/index.h"
+#include "numerics/convergence.h"
 #include "relief/bounds/barrier.h"
 
 namespace formwright {
@@ -86,10 +87,19 @@ BalancedResult BalancedSolver::solve(const Eigen::VectorXd& start, double energy
     point.of_energy = energy_gradient(at) / energy_unit;
   };
   linearise(u, here);
+  // Both weights fall by a factor a step, then the decrease does.
+  constexpr double share_of_weights = 0.6;
+  Convergence weights(std::max(settings.last_beta, min_beta)), gaps(settings.gap), last(1);
+  double at_end = 0;
   for (; result.steps < settings.max_steps; ++result.steps) {
-    context.progress(static_cast<double>(result.steps) / settings.max_steps);
+    const double passed =
+        share_of_weights * std::min(weights.passed(beta), gaps.passed(gap)) + (1 - share_of_weights) * at_end;
+    context.progress(passed);
     load(2 * beta / energy_unit, here.faces, barrier.stiffness().array() + shift);
-    factor_.factorize(matrix_, context);
+    {
+      const auto quiet = context.span(passed, passed, "");  // one factorisation of many
+      factor_.factorize(matrix_, context);
+    }
     const Eigen::VectorXd slope = here.of_normals + beta * here.of_energy + barrier.gradient();
     Eigen::VectorXd step = -slope;
     factor_.solve(step);
@@ -98,6 +108,7 @@ BalancedResult BalancedSolver::solve(const Eigen::VectorXd& start, double energy
                   "The relief did not converge on this model: choose the appearance \"detail\", or repair the model.");
     const double downhill = slope.dot(step);  // negative
     const bool at_the_end = beta <= settings.last_beta && gap <= settings.gap;
+    if (at_the_end) at_end = last.passed(-downhill / (settings.decrease * size));
     if (at_the_end && -downhill <= settings.decrease * size) {
       result.converged = true;
       break;

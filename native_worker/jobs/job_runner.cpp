@@ -4,8 +4,9 @@
 //   bool}
 //        | {"cancel": id}
 //   out: {"progress": id, ...}
-//        | {"finished": id, "result": message, "altered_blobs": [sha256, ...], "stuck"?: true, "time_shares"?: [...]}
-//        | {"finished": id, "not_kept": sentence}: the disk did not take the outputs, the job is to run again
+//        | {"finished": id, "result": message, "altered_blobs": [sha256, ...], "stuck"?: true, "time_shares"?:
+//        {"alike", "shares"}} | {"finished": id, "not_kept": sentence}: the disk did not take the outputs, the job is
+//        to run again
 // `stuck`: the solver did not hear that its time was up, and this process takes no further job.
 // `time_shares`: how this process's runs of the operation spent their time, for tests/bench/progress.mjs.
 // Paths come from the server, which makes them from hashes and identifiers only.
@@ -24,6 +25,8 @@
 #include "base/sha256.h"
 #include "system/files.h"
 #include "system/host.h"
+#include "job/catalog.h"
+#include "job/progress/alike_runs.h"
 #include "job/progress/timed_host.h"
 #include "job/run.h"
 #include "jobs/job_runner.h"
@@ -202,8 +205,11 @@ int run_jobs_for_server(const std::vector<std::string>& words) {
       if (cancelled && !inbox.cancelled()) result = time_is_up(options);
     }
     if (request.value("time_shares", false)) {
-      const auto shares = learned_time_shares(request["job"]["operation"].get<std::string>(), session);
-      answer["time_shares"] = shares ? Json(*shares) : Json(nullptr);
+      const Operation* operation = find_operation(request["job"]["operation"].get<std::string>());
+      const std::string alike =
+          operation ? alike_runs(*operation, request["job"].value("parameters", Json::object())) : "";
+      const auto shares = learned_time_shares(alike, session);
+      answer["time_shares"] = shares ? Json({{"alike", alike}, {"shares", shares->back()}}) : Json(nullptr);
     }
     send(answer);
   }

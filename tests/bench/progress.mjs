@@ -21,41 +21,71 @@ const relief = (name, vertices, parameters = {}, outputs) => job('relief', param
 const forming = (operation, name, vertices, parameters = {}) => job(operation, parameters, { mould: model(name, vertices) });
 const design = (name, vertices, width_mm = 20) => job('zippable-design', { width_mm, size_mm: 300 }, { mesh: model(name, vertices) });
 const zipping = (name, vertices, width_mm = 20) => job('zippable-simulate', {}, { design: made(design(name, vertices, width_mm), 'design.json') });
-const milling = (name, vertices, parameters) => job('mill-job', { width_mm: 120, ...parameters }, { model: made(relief(name, vertices, {}, ['heightmap.png']), 'heightmap.png') });
 const small = { size_mm: 60, sheet_x_mm: 130, sheet_y_mm: 130, clamp_opening_x_mm: 110, clamp_opening_y_mm: 110, platform_travel_mm: 60 };
 const measured = (name, fault) => made(job('evidence-virtual-object', { ...small, points: 300, triangles: 1500, ...fault }, { mould: { sample: name } }, ['object.zip']), 'object.zip');
 const diagnosing = (operation, parameters, name, fault) => job(operation, parameters, { object: measured(name, fault) });
 
-/** The usual shares are the mean of these. */
-const recorded = [
-  relief('bust', 60000), relief('octopus', 40000, { thickness_mm: 2 }), relief('cat', 60000),
-  forming('thermoform-simulate', 'bust', 60000), forming('thermoform-simulate', 'cat', 20000),
-  forming('thermoform-texture', 'cat', 20000), forming('thermoform-texture', 'octopus', 20000),
-  forming('thermoform-mould', 'octopus', 60000),
-  design('octopus', 40000), design('cat', 40000, 15), design('t_shape', 30000),
-  zipping('star', 4000),
-  milling('bust', 40000, { width_mm: 400, thickness_mm: 10, diameter_mm: 0.8, rough_diameter_mm: 3, pixel_mm: 0.25 }),
-  diagnosing('evidence-diagnose', { triangles: 1500 }, 'pyramid', { heating_gradient_x: 0.5 }),
-  diagnosing('evidence-calibrate', { triangles: 3000 }, 'pyramid', { young_modulus_pa: 3300000 }),
-];
+/** What is known of how an operation spends its time comes from these. */
+const recorded = {
+  relief_bust: relief('bust', 200000),
+  relief_octopus_thin: relief('octopus', 100000, { thickness_mm: 2 }),
+  relief_cat: relief('cat', 150000),
+  relief_coin_thin: relief('coin', 40000, { thickness_mm: 1 }),
+  relief_fish: relief('fish', 120000, { thickness_mm: 6 }),
+  relief_heart_thin: relief('heart', 60000, { thickness_mm: 1.5 }),
+  relief_bust_balanced: relief('bust', 60000, { appearance: 'balanced' }),
+  relief_fish_balanced: relief('fish', 60000, { appearance: 'balanced', thickness_mm: 3 }),
+  relief_cat_balanced: relief('cat', 40000, { appearance: 'balanced', thickness_mm: 8 }),
+  simulate_bust: forming('thermoform-simulate', 'bust', 60000, { triangles: 20000 }),
+  simulate_cat: forming('thermoform-simulate', 'cat', 20000, { triangles: 15000 }),
+  simulate_t_shape: forming('thermoform-simulate', 't_shape', 30000, { triangles: 30000 }),
+  simulate_fish: forming('thermoform-simulate', 'fish', 30000, { triangles: 25000 }),
+  simulate_star: forming('thermoform-simulate', 'star', 20000, { triangles: 40000 }),
+  texture_cat: forming('thermoform-texture', 'cat', 40000, { triangles: 20000 }),
+  texture_octopus: forming('thermoform-texture', 'octopus', 40000, { triangles: 15000 }),
+  texture_bust: forming('thermoform-texture', 'bust', 60000, { triangles: 25000 }),
+  texture_coin: forming('thermoform-texture', 'coin', 30000, { triangles: 15000 }),
+  mould_octopus: forming('thermoform-mould', 'octopus', 150000),
+  mould_bust: forming('thermoform-mould', 'bust', 150000),
+  mould_star: forming('thermoform-mould', 'star', 100000),
+  design_octopus: design('octopus', 60000),
+  design_cat: design('cat', 40000, 15),
+  design_t_shape: design('t_shape', 60000),
+  design_bust: design('bust', 60000),
+  design_fish: design('fish', 40000, 30),
+  design_pyramid: design('pyramid', 40000, 15),
+  zipping_star: zipping('star', 2000),
+  zipping_t_shape: zipping('t_shape', 2000),
+  zipping_hemisphere: zipping('hemisphere', 2500),
+  diagnose_pyramid: diagnosing('evidence-diagnose', { triangles: 1500 }, 'pyramid', { heating_gradient_x: 0.5 }),
+  diagnose_t_shape: diagnosing('evidence-diagnose', { triangles: 1000 }, 't_shape', { weak_vacuum: 0.4 }),
+  diagnose_clean: diagnosing('evidence-diagnose', { triangles: 1500 }, 'pyramid', {}),
+  diagnose_t_shape_without_pairs: diagnosing('evidence-diagnose', { triangles: 1500, pairs: false }, 't_shape', { scan_shift_x_mm: 1 }),
+  diagnose_pyramid_without_pairs: diagnosing('evidence-diagnose', { triangles: 1000, pairs: false }, 'pyramid', { weak_vacuum: 0.5 }),
+  calibrate_pyramid: diagnosing('evidence-calibrate', { triangles: 3000 }, 'pyramid', { young_modulus_pa: 3300000 }),
+  calibrate_t_shape: diagnosing('evidence-calibrate', { triangles: 3000 }, 't_shape', { young_modulus_pa: 2500000 }),
+  calibrate_hemisphere: diagnosing('evidence-calibrate', { triangles: 5000 }, 'hemisphere', { young_modulus_pa: 3000000 }),
+};
 /** Other models, sizes and parameters: on these the remaining times are judged. */
 const judged = {
-  relief_octopus_60k: relief('octopus', 60000),
-  relief_mountain_40k: relief('mountain', 40000, { thickness_mm: 3 }),
-  relief_star_thin: relief('star', 40000, { thickness_mm: 1 }),
-  thermoform_simulate_mountain: forming('thermoform-simulate', 'mountain', 40000),
-  thermoform_simulate_octopus: forming('thermoform-simulate', 'octopus', 40000, { triangles: 6000 }),
-  thermoform_texture_fish: forming('thermoform-texture', 'fish', 20000),
-  thermoform_mould_cat: forming('thermoform-mould', 'cat', 40000),
-  zippable_design_cat: design('cat', 20000, 25),
+  relief_octopus: relief('octopus', 200000),
+  relief_mountain: relief('mountain', 150000, { thickness_mm: 3 }),
+  relief_star_thin: relief('star', 60000, { thickness_mm: 1 }),
+  relief_fish_thin: relief('fish', 50000, { thickness_mm: 1.5 }),
+  relief_octopus_balanced: relief('octopus', 60000, { appearance: 'balanced' }),
+  thermoform_simulate_mountain: forming('thermoform-simulate', 'mountain', 40000, { triangles: 30000 }),
+  thermoform_simulate_octopus: forming('thermoform-simulate', 'octopus', 40000, { triangles: 20000 }),
+  thermoform_texture_fish: forming('thermoform-texture', 'fish', 40000, { triangles: 20000 }),
+  thermoform_texture_mountain: forming('thermoform-texture', 'mountain', 40000, { triangles: 30000 }),
+  thermoform_mould_cat: forming('thermoform-mould', 'cat', 150000),
+  zippable_design_cat: design('cat', 60000, 25),
   zippable_design_star: design('star', 60000, 15),
-  zippable_design_heart: design('heart', 40000),
-  zippable_simulate_heart: zipping('heart', 3000),
-  zippable_simulate_wide_star: zipping('star', 6000, 30),
-  mill_job_cat: milling('cat', 40000, { width_mm: 250, thickness_mm: 8, diameter_mm: 1 }),
+  zippable_design_heart: design('heart', 60000),
+  zippable_simulate_heart: zipping('heart', 1500),
+  zippable_simulate_wide_star: zipping('star', 3000, 30),
   evidence_diagnose_hemisphere: diagnosing('evidence-diagnose', { triangles: 1500 }, 'hemisphere', { scan_shift_x_mm: 1 }),
   evidence_diagnose_without_pairs: diagnosing('evidence-diagnose', { triangles: 1000, pairs: false }, 'hemisphere', { weak_vacuum: 0.5 }),
-  evidence_calibrate_hemisphere: diagnosing('evidence-calibrate', { triangles: 2000 }, 'hemisphere', { young_modulus_pa: 2000000 }),
+  evidence_calibrate_pyramid: diagnosing('evidence-calibrate', { triangles: 4000 }, 'pyramid', { young_modulus_pa: 2000000 }),
 };
 
 /** Runs one job in a process of its own: its messages with their seconds, its end and the bytes of its outputs. */
@@ -80,7 +110,7 @@ function run(program, message, files) {
       const bytes = Object.fromEntries(Object.keys(outputs).map((name) => [name, readFileSync(path.join(folder, name))]));
       rmSync(folder, { recursive: true });
       if (error) reject(new Error(`${message.operation}: ${error.message}`));
-      else resolve({ seconds, said, bytes, shares: answer.time_shares });
+      else resolve({ seconds, said, bytes, timed: answer.time_shares });
     });
   });
 }
@@ -136,24 +166,21 @@ const [program, ...names] = words;
 if (!program) throw new Error('Name the native program: node tests/bench/progress.mjs build/formwright');
 
 if (table) {
-  const chosen = recorded.filter(({ operation }) => names.length === 0 || names.includes(operation));
-  const sums = new Map();
-  for (const message of chosen) {
-    const ran = await runWithInputs(program, message);
-    console.error(message.operation, round(ran.seconds));
-    if (ran.shares === null) throw new Error(`${message.operation} ended within a second: use a larger model`);
-    sums.set(message.operation, [...(sums.get(message.operation) ?? []), ran.shares]);
-  }
   const source = readFileSync(table, 'utf8');
   const at = source.indexOf('shares{') + 'shares{'.length;
   const end = source.indexOf('};', at);
-  const rows = new Map([...source.slice(at, end).matchAll(/^ *\{"([^"]+)",[^"]*?\}\},$/gm)].map(([row, operation]) => [operation, row.trim()]));
-  for (const [operation, runs] of sums) {
-    const mean = runs[0].map((_, k) => Math.round((1000 * runs.reduce((sum, run) => sum + run[k], 0)) / runs.length));
-    rows.set(operation, `{"${operation}", {${mean.flatMap((share, k) => (share > 0 ? [`{${k}, ${share}}`] : [])).join(', ')}}},`);
+  const chosen = Object.values(recorded).filter(({ operation }) => names.length === 0 || names.includes(operation));
+  const rows = [...source.slice(at, end).matchAll(/^ *\{"([^"]+)",[^"]*?\}\},$/gm)]
+    .filter(([, alike]) => !chosen.some((message) => message.operation === alike.split(' ')[0]))
+    .map(([row]) => row.trim());
+  for (const message of chosen) {
+    const { seconds, timed } = await runWithInputs(program, message);
+    console.error(message.operation, round(seconds));
+    if (timed === null) throw new Error(`${message.operation} ended within a second: use a larger model`);
+    const pairs = timed.shares.flatMap((share, k) => (Math.round(1000 * share) > 0 ? [`{${k}, ${Math.round(1000 * share)}}`] : []));
+    rows.push(`{"${timed.alike}", {${pairs.join(', ')}}},`);
   }
-  const lines = [...rows].sort().map(([, row]) => `\n      ${row}`).join('');
-  writeFileSync(table, `${source.slice(0, at)}${lines}\n  ${source.slice(end)}`);
+  writeFileSync(table, `${source.slice(0, at)}${rows.sort().map((row) => `\n      ${row}`).join('')}\n  ${source.slice(end)}`);
   process.exit();
 }
 

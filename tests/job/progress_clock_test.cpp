@@ -10,6 +10,8 @@
 #include <thread>
 #include <vector>
 
+#include "job/catalog.h"
+#include "job/progress/alike_runs.h"
 #include "job/progress/timed_host.h"
 
 namespace formwright {
@@ -51,15 +53,15 @@ TimeShares times(const TimeShares& shares, double seconds) {
 
 TEST_CASE("ProgressClock.ARunLikeTheUsualOneIsForetoldExactly") {
   for (const double seconds : {5.0, 40.0, 3000.0}) {
-    ProgressClock clock(uneven());
+    ProgressClock clock({uneven()});
     int given = 0, count = 0;
     for (const auto& [at, said] : follow(clock, times(uneven(), seconds))) {
       // The first hundredth is finished before the speed is known.
-      if (at > 0.02 * seconds) CHECK_THAT(said.passed, WithinAbs(at / seconds, 1e-6));
+      if (at > 0.02 * seconds && at < seconds - 0.02) CHECK_THAT(said.passed, WithinAbs(at / seconds, 1e-6));
       ++count;
       if (!said.seconds_left) continue;
       ++given;
-      CHECK_THAT(*said.seconds_left, WithinAbs(seconds - at, 1e-6 * seconds));
+      CHECK_THAT(*said.seconds_left, WithinAbs(std::max(seconds - at, 0.5), 1e-6 * seconds));
     }
     CHECK(given > (seconds > 10 ? 0.9 : 0.5) * count);
   }
@@ -74,7 +76,7 @@ TEST_CASE("ProgressClock.ASpeedThatChangesIsFollowed") {
     if (before > 12) seconds[k] *= 3;
   }
   const double all = std::accumulate(seconds.begin(), seconds.end(), 0.0);
-  ProgressClock clock(uneven());
+  ProgressClock clock({uneven()});
   double last = 0;
   for (const auto& [at, said] : follow(clock, seconds)) {
     CHECK(said.passed >= last);
@@ -91,7 +93,7 @@ TEST_CASE("ProgressClock.WhatWasKeptFromBeforeSaysNothingOfTheSpeed") {
   TimeShares seconds = times(uneven(), 50);
   seconds[30] = 0;
   const double all = std::accumulate(seconds.begin(), seconds.end(), 0.0);
-  ProgressClock clock(uneven());
+  ProgressClock clock({uneven()});
   int given = 0;
   for (const auto& [at, said] : follow(clock, seconds))
     if (said.seconds_left && at > 0.5 * all) {
@@ -106,12 +108,47 @@ TEST_CASE("ProgressClock.NoFigureWhileAPartTakesFarLongerThanUsual") {
   seconds[40] = 100;
   double begin = 0;
   for (std::size_t k = 0; k < 40; ++k) begin += seconds[k];
-  ProgressClock clock(uneven());
+  ProgressClock clock({uneven()});
   for (const auto& [at, said] : follow(clock, seconds))
     if (at > begin + 2 && at < begin + 100) {
       CHECK_FALSE(said.seconds_left);
       CHECK(said.passed < 0.9);
     }
+}
+
+/// Shares that are even up to 0.5, where `first` of the time has passed, and even from there on.
+TimeShares halves(double first) {
+  TimeShares shares{};
+  for (std::size_t k = 0; k < shares.size(); ++k) shares[k] = (k < 50 ? first : 1 - first) / 50;
+  return shares;
+}
+
+TEST_CASE("ProgressClock.RunsThatDisagreeGiveNoFigureUntilTheyAgree") {
+  // Both earlier runs look alike up to the middle; then three quarters of the time remain, or a quarter.
+  ProgressClock clock({halves(0.25), halves(0.75)});
+  int early = 0, late = 0;
+  for (const auto& [at, said] : follow(clock, times(halves(0.25), 100))) {
+    if (!said.seconds_left) continue;
+    if (at < 25) ++early;
+    else ++late;
+    if (at > 60) CHECK_THAT(*said.seconds_left, WithinRel(std::max(100 - at, 0.5), 0.5));
+  }
+  CHECK(early == 0);
+  CHECK(late > 1000);  // of 3,750 moments
+}
+
+TEST_CASE("ProgressClock.TheRunThatIsLikeThisOneCounts") {
+  // Of the others half of the time passes at 0.03, where this one is soon gone on.
+  TimeShares other{};
+  for (std::size_t k = 0; k < other.size(); ++k) other[k] = k == 3 ? 0.505 : 0.005;
+  ProgressClock clock({other, uneven(), other, other});
+  int given = 0;
+  for (const auto& [at, said] : follow(clock, times(uneven(), 100)))
+    if (at > 65 && said.seconds_left) {
+      CHECK_THAT(*said.seconds_left, WithinRel(std::max(100 - at, 0.5), 0.2));
+      ++given;
+    }
+  CHECK(given > 1100);  // of 1,750 moments
 }
 
 TEST_CASE("ProgressClock.MeasuresHowTheTimeWasSpent") {
@@ -125,8 +162,8 @@ TEST_CASE("ProgressClock.MeasuresHowTheTimeWasSpent") {
   }
   CHECK_THAT(sum, WithinRel(1.0, 1e-9));
   // A run that is over at once, and one whose fractions are out of range.
-  CHECK_THAT(ProgressClock(uneven()).measured(0)[7], WithinAbs(0.01, 1e-12));
-  ProgressClock wild(uneven());
+  CHECK_THAT(ProgressClock({uneven()}).measured(0)[7], WithinAbs(0.01, 1e-12));
+  ProgressClock wild({uneven()});
   wild.report(7, 1);
   wild.report(-3, 2);
   CHECK(wild.at(2).passed <= 1);
@@ -136,10 +173,29 @@ TEST_CASE("ProgressClock.UsualSharesAddUpToOne") {
   for (const char* name :
        {"relief", "thermoform-simulate", "zippable-design", "evidence-diagnose", "no such operation"}) {
     INFO(name);
-    const TimeShares shares = usual_time_shares(name);
-    CHECK_THAT(std::accumulate(shares.begin(), shares.end(), 0.0), WithinRel(1.0, 1e-9));
-    for (const double share : shares) CHECK(share >= 0);
+    const std::vector<TimeShares> runs = usual_time_shares(name);
+    CHECK(!runs.empty());
+    for (const TimeShares& shares : runs) {
+      CHECK_THAT(std::accumulate(shares.begin(), shares.end(), 0.0), WithinRel(1.0, 1e-9));
+      for (const double share : shares) CHECK(share >= 0);
+    }
   }
+}
+
+TEST_CASE("AlikeRuns.NamesTheSwitchesThatAreNotAsUsual") {
+  const Operation* diagnose = find_operation("evidence-diagnose");
+  REQUIRE(diagnose);
+  CHECK(alike_runs(*diagnose, Json::object()) == "evidence-diagnose");
+  CHECK(alike_runs(*diagnose, {{"triangles", 700}, {"pairs", true}}) == "evidence-diagnose");
+  CHECK(alike_runs(*diagnose, {{"pairs", false}}) == "evidence-diagnose pairs=false");
+  const Operation* relief = find_operation("relief");
+  REQUIRE(relief);
+  CHECK(alike_runs(*relief, {{"appearance", "balanced"}, {"width_mm", 70}}) == "relief appearance=balanced");
+  CHECK(alike_runs(*relief, {{"appearance", 7}}) == "relief");
+  CHECK(alike_runs(*relief, Json::array()) == "relief");
+  // Runs that nobody measured with a switch are compared with those without it.
+  CHECK(usual_time_shares("relief no_such=true").size() == usual_time_shares("relief").size());
+  CHECK(usual_time_shares("evidence-diagnose pairs=false").size() < usual_time_shares("evidence-diagnose").size());
 }
 
 TEST_CASE("TimedHost.SpeaksWhileTheJobOnlyAsksWhetherToEndAndLearnsFromIt") {
@@ -163,7 +219,8 @@ TEST_CASE("TimedHost.SpeaksWhileTheJobOnlyAsksWhetherToEndAndLearnsFromIt") {
   timed.succeeded();
   const auto learned = learned_time_shares("a test", session);
   REQUIRE(learned);
-  CHECK((*learned)[50] > 0.9);
+  REQUIRE(learned->size() == 1);
+  CHECK(learned->front()[50] > 0.9);
   cancel = true;
   CHECK(context.cancelled());
 }

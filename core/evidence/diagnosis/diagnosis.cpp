@@ -61,7 +61,7 @@ class Diagnostician {
   }
 
   void judge() {
-    const auto span = context_.span(0.85, 1, "Predicting the held-out data");
+    const auto span = context_.span(0.9, 1, "Predicting the held-out data");
     find_causes();
     result_.unexplained_before = tried_.structure_left({});
     result_.extended = result_.base;

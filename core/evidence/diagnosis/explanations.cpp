@@ -36,7 +36,7 @@ void Explanations::estimate_noise_about(const Predictions& predictions) {
 }
 
 void Explanations::calibrate() {
-  const auto span = context_.span(0, 0.2, "Calibrating");
+  const auto span = context_.span(0, 0.08, "Calibrating");
   auto at_nominal = [&] {
     const auto begin = context_.span(0, 0.05, "Calibrating");
     return bag_.run(model_.nominal(), context_, "Calibrating");
@@ -53,7 +53,7 @@ void Explanations::calibrate() {
 }
 
 void Explanations::screen() {
-  const auto span = context_.span(0.2, 0.4, "Trying each effect");
+  const auto span = context_.span(0.08, 0.2, "Trying each effect");
   columns_.clear();
   for (std::size_t p = 0; p < model_.parameters().size(); ++p) columns_.push_back(static_cast<int>(p));
   Probing about_base, about_nominal;
@@ -201,24 +201,28 @@ void Explanations::renew_noise() {
 }
 
 void Explanations::refit() {
-  const auto span = context_.span(0.4, 0.7, fitting_stage);
+  const auto span = context_.span(0.2, 0.75, fitting_stage);
   std::vector<std::vector<int>> singles{{}};
   for (const Hypothesis& h : screened_)
     if (h.causes.size() == 1 && std::find(singles.begin(), singles.end(), h.causes) == singles.end() &&
         singles.size() <= refitted_singles)
       singles.push_back(h.causes);
-  const auto parts = static_cast<double>(singles.size() + (pairs_ ? 1 + refitted_pairs : 0) + 2 * leader_count);
+  constexpr std::size_t fits_of_search = 16;  // what the search for pairs takes, in fits
+  const auto parts =
+      static_cast<double>(singles.size() + (pairs_ ? fits_of_search + refitted_pairs : 0) + 2 * leader_count);
   double part = 0;
-  const auto stage = [&](auto&& work) {
+  const auto fits = [&](std::size_t count, auto&& work) {
+    const double end = part + static_cast<double>(count);
     // More leaders may have to be polished than were counted on.
-    const auto step = context_.span(std::min(1.0, part / parts), std::min(1.0, (part + 1) / parts), fitting_stage);
+    const auto step = context_.span(std::min(1.0, part / parts), std::min(1.0, end / parts), fitting_stage);
     work();
-    part += 1;
+    part = end;
   };
+  const auto stage = [&](auto&& work) { fits(1, work); };
   for (const auto& causes : singles) stage([&] { refit_with(causes); });
   normalise(hypotheses_);
   std::vector<PairGuess> pairs;
-  if (pairs_) stage([&] { pairs = promising_pairs(); });
+  if (pairs_) fits(fits_of_search, [&] { pairs = promising_pairs(); });
   for (const PairGuess& pair : pairs) stage([&] { refit_with(pair.causes, &pair); });
   normalise(hypotheses_);
   polish_leaders(leader_count, stage);

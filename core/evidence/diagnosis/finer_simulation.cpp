@@ -57,8 +57,11 @@ void Explanations::refit_as(const Refit& coarse) {
 
 void Explanations::look_again(const Explanations& coarse) {
   const char* const looking = "Repeating on a finer sheet";
-  const auto span = context_.span(0.7, 0.85, looking);
-  auto at_nominal = bag_.run(model_.nominal(), context_, looking);
+  const auto span = context_.span(0.75, 0.9, looking);
+  auto at_nominal = [&] {
+    const auto begin = context_.span(0, 0.05, looking);
+    return bag_.run(model_.nominal(), context_, looking);
+  }();
   if (!at_nominal)
     throw Error(ErrorCode::could_not_solve, "", "The finer simulation fails with the set-up's own parameters.");
   at_nominal_ = std::move(*at_nominal);
@@ -67,10 +70,16 @@ void Explanations::look_again(const Explanations& coarse) {
   nominal_sensitivities_ = coarse.nominal_sensitivities_;
   discrepancies_ = coarse.discrepancies_;
   noise_ = coarse.noise_;
-  base_ = fit_parameters(bag_, *mean_distance_objective(model_, softness()), model_.base_parameters(), coarse.base_.u,
-                         sensitivities_of(model_.base_parameters(), sensitivities_, columns_), {}, context_, looking);
+  {
+    const auto begin = context_.span(0.05, 0.2, looking);
+    base_ = fit_parameters(bag_, *mean_distance_objective(model_, softness()), model_.base_parameters(), coarse.base_.u,
+                           sensitivities_of(model_.base_parameters(), sensitivities_, columns_), {}, context_, looking);
+  }
   // What equally good simulations would do is less on a finer sheet; where a coarse one leaps a fine one does, too.
-  discrepancy_sensitivities_ = sensitivities_at(bag_, base_.u, base_.predictions, discrepancies_, context_, looking);
+  {
+    const auto begin = context_.span(0.2, 0.3, looking);
+    discrepancy_sensitivities_ = sensitivities_at(bag_, base_.u, base_.predictions, discrepancies_, context_, looking);
+  }
   movements_ = movements_of(model_, discrepancies_, discrepancy_sensitivities_);
   for (std::size_t object = 0; object < movements_.size(); ++object) {
     const std::vector<Eigen::MatrixXd>& all = coarse.movements_[object];
@@ -91,7 +100,11 @@ void Explanations::look_again(const Explanations& coarse) {
   weigh_refit(refits_.back());
   double best = plain_none(coarse.hypotheses_).log_evidence;
   for (const Hypothesis& h : coarse.hypotheses_) best = std::max(best, h.log_evidence);
+  double done = 0;
   for (const Refit& r : coarse.refits_) {
+    const auto fit = context_.span(0.3 + 0.4 * done / static_cast<double>(coarse.refits_.size()),
+                                   0.3 + 0.4 * (done + 1) / static_cast<double>(coarse.refits_.size()), looking);
+    ++done;
     if (r.causes.empty()) continue;
     const bool near = std::any_of(coarse.hypotheses_.begin(), coarse.hypotheses_.end(), [&](const Hypothesis& h) {
       return h.causes == r.causes && h.log_evidence > best - out_of_reach;
@@ -99,7 +112,12 @@ void Explanations::look_again(const Explanations& coarse) {
     if (near) refit_as(r);
   }
   normalise(hypotheses_);
-  polish_leaders(polished_again, [](const std::function<void()>& work) { work(); });
+  double polished = 0;
+  polish_leaders(polished_again, [&](const std::function<void()>& work) {
+    const auto fit = context_.span(std::min(1.0, 0.7 + 0.1 * polished), std::min(1.0, 0.8 + 0.1 * polished), looking);
+    ++polished;
+    work();
+  });
   renew_noise();
   // The others stay as far from none as they were, and no better: they were out of reach, or did nothing.
   const double none = plain_none(hypotheses_).log_evidence, coarse_none = plain_none(coarse.hypotheses_).log_evidence;

@@ -1,30 +1,32 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 // From the fractions that an operation reports to the share of its time that has passed, and what remains.
-#include <deque>
 #include <optional>
-#include <utility>
+#include <vector>
 
 #include "job/progress/time_shares.h"
 
 namespace formwright {
 
-/// Follows one run. Times are seconds since its begin and never fall. Not for several threads.
+/// Follows one run beside earlier runs of the same operation. Times are seconds since its begin and never fall. Not for
+/// several threads.
 ///
-/// Where the run is, is known by the fractions; how quick it is, by the time that the finished hundredths took against
-/// their shares. Hundredths that took less than a fifth of what was expected were not done (a factorisation that was
-/// kept, simulations that were found again) and say nothing of the speed.
+/// Each earlier run foretells what remains: as many times the seconds that have passed as it was itself from there on.
+/// It counts the more, the more alike the two spent their time so far, and the less, the longer this run is at a
+/// hundredth than the earlier one was. A remaining time is given only while the runs that count agree.
+/// Hundredths that took less than a fifth of what was expected were not done (a factorisation that was kept,
+/// simulations that were found again); they are left out of both runs.
 class ProgressClock {
  public:
-  /// `shares`: how the operation usually spends its time.
-  explicit ProgressClock(const TimeShares& shares);
+  /// `runs`: how earlier runs spent their time; at least one.
+  explicit ProgressClock(std::vector<TimeShares> runs);
 
   /// The operation reports `fraction` (0 to 1) of its work; smaller ones than before are ignored.
   void report(double fraction, double now_s);
 
   struct Estimate {
     double passed = 0;                   // share of the time, 0 to 1, never falling
-    std::optional<double> seconds_left;  // only while recent estimates of the end agree
+    std::optional<double> seconds_left;  // only while the earlier runs that count agree
   };
   Estimate at(double now_s);
 
@@ -32,17 +34,19 @@ class ProgressClock {
   TimeShares measured(double end_s) const;
 
  private:
-  double expected_s(double share) const { return share * *seconds_of_all_; }
-  void finish_until(int index, double now_s);
+  struct Forecast {
+    double weight = 0, seconds_left = 0;
+    bool known = false;  // from enough of the run, and of one that is not long past this place
+  };
+  Forecast forecast(const TimeShares& run, double now_s) const;
 
-  TimeShares shares_, spent_{};         // spent_: seconds
-  int index_ = 0;                       // the hundredth that the run is in
-  double finished_ = 0;                 // shares before it
-  double entered_s_ = 0;                // when it was entered
-  double counted_ = 0, counted_s_ = 0;  // shares that were done, and the seconds they took
-  std::optional<double> seconds_of_all_;
+  struct Entry {
+    int hundredth = 0;
+    double at_s = 0;
+  };
+  std::vector<TimeShares> runs_;
+  std::vector<Entry> entered_{{}};  // hundredths that were reported, in order; the run is in the last one
   double passed_ = 0;
-  std::deque<std::pair<double, double>> ends_;  // when the run was expected to end: time of the estimate, seconds
 };
 
 }  // namespace formwright

@@ -10,10 +10,4 @@ int time_share_index(double fraction) {
   return std::clamp(static_cast<int>(fraction * (last + 1) + 1e-9), 0, last);
 }
 
-TimeShares mean_of(const TimeShares& a, const TimeShares& b) {
-  TimeShares mean;
-  for (std::size_t k = 0; k < mean.size(); ++k) mean[k] = 0.5 * (a[k] + b[k]);
-  return mean;
-}
-
 }  // namespace formwright

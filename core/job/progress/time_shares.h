@@ -3,6 +3,7 @@
 // How an operation's time is spread over the fractions that it reports.
 #include <array>
 #include <string>
+#include <vector>
 
 namespace formwright {
 
@@ -13,10 +14,9 @@ using TimeShares = std::array<double, 100>;
 /// The entry that belongs to a reported fraction; those outside 0 to 1 belong to the first and the last.
 int time_share_index(double fraction);
 
-/// As usually measured for an operation of the catalog (usual_time_shares.cpp); even for one that was not measured.
-TimeShares usual_time_shares(const std::string& operation);
-
-/// Half of each: one unusual run does not make all that follow look wrong.
-TimeShares mean_of(const TimeShares& a, const TimeShares& b);
+/// Of runs that were measured (usual_time_shares.cpp), on models, sizes and parameters that differ. `alike` is an
+/// operation of the catalog with its unusual switches (alike_runs.h); where none was measured with those, the
+/// operation's own; one even entry for an operation that was not measured.
+std::vector<TimeShares> usual_time_shares(const std::string& alike);
 
 }  // namespace formwright

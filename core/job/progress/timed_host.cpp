@@ -13,14 +13,16 @@ namespace {
 /// Shorter runs are previews with most of the work kept from before.
 constexpr double min_learned_s = 1;
 constexpr double quiet_s = 0.25;
+/// Runs of a session that are remembered.
+constexpr std::size_t max_learned = 4;
 
-std::string session_key(const std::string& operation) { return "time_shares/" + operation; }
+std::string session_key(const std::string& alike) { return "time_shares/" + alike; }
 
 }  // namespace
 
 struct TimedHost::Run {
-  Run(Host outer, std::string operation_key, Session& kept, const TimeShares& shares)
-      : host(std::move(outer)), key(std::move(operation_key)), session(kept), clock(shares) {}
+  Run(Host outer, std::string kept_as, Session& kept, std::vector<TimeShares> runs)
+      : host(std::move(outer)), key(std::move(kept_as)), session(kept), clock(std::move(runs)) {}
 
   void report(const Progress& progress) {
     const double now_s = watch.seconds();
@@ -51,11 +53,12 @@ struct TimedHost::Run {
   std::thread::id thread = std::this_thread::get_id();
 };
 
-TimedHost::TimedHost(const Host& host, const std::string& operation, Session& session) : timed_(host) {
+TimedHost::TimedHost(const Host& host, const std::string& alike, Session& session) : timed_(host) {
   if (!host.on_progress) return;
-  const auto learned = learned_time_shares(operation, session);
-  run_ =
-      std::make_shared<Run>(host, session_key(operation), session, learned ? *learned : usual_time_shares(operation));
+  std::vector<TimeShares> runs = usual_time_shares(alike);
+  if (const auto learned = learned_time_shares(alike, session))
+    runs.insert(runs.end(), learned->begin(), learned->end());
+  run_ = std::make_shared<Run>(host, session_key(alike), session, std::move(runs));
   timed_.on_progress = [run = run_](const Progress& progress) { run->report(progress); };
   timed_.cancel_requested = [run = run_] {
     if (std::this_thread::get_id() == run->thread) run->tick();
@@ -69,15 +72,16 @@ void TimedHost::succeeded() {
   if (!run_) return;
   const double seconds = run_->watch.seconds();
   if (seconds < min_learned_s) return;
-  const TimeShares measured = run_->clock.measured(seconds);
-  const auto before = run_->session.find<TimeShares>(run_->key);
-  constexpr double memory_mb = 0.001;
-  run_->session.keep(run_->key, std::make_shared<TimeShares>(before ? mean_of(*before, measured) : measured),
-                     memory_mb);
+  std::vector<TimeShares> runs;
+  if (const auto before = run_->session.find<std::vector<TimeShares>>(run_->key)) runs = *before;
+  if (runs.size() == max_learned) runs.erase(runs.begin());
+  runs.push_back(run_->clock.measured(seconds));
+  constexpr double memory_mb = 0.005;
+  run_->session.keep(run_->key, std::make_shared<std::vector<TimeShares>>(std::move(runs)), memory_mb);
 }
 
-std::shared_ptr<const TimeShares> learned_time_shares(const std::string& operation, Session& session) {
-  return session.find<TimeShares>(session_key(operation));
+std::shared_ptr<const std::vector<TimeShares>> learned_time_shares(const std::string& alike, Session& session) {
+  return session.find<std::vector<TimeShares>>(session_key(alike));
 }
 
 }  // namespace formwright

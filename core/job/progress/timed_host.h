@@ -3,6 +3,7 @@
 // Between a job and its host: what reaches the host is the share of the time that has passed, not of the code.
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "base/context.h"
 #include "job/contract/session.h"
@@ -10,12 +11,12 @@
 
 namespace formwright {
 
-/// A host like `host` for one run of `operation`, which begins now. Its `on_progress` hands on what a ProgressClock
-/// makes of the reported fractions, also while the job reports nothing but asks whether it is to end.
-/// `session` keeps how the operation spent its time from run to run.
+/// A host like `host` for one run, which begins now; `alike` names the runs to compare it with (alike_runs.h). Its
+/// `on_progress` hands on what a ProgressClock makes of the reported fractions, also while the job reports nothing but
+/// asks whether it is to end. `session` keeps how the operation spent its time from run to run.
 class TimedHost {
  public:
-  TimedHost(const Host& host, const std::string& operation, Session& session);
+  TimedHost(const Host& host, const std::string& alike, Session& session);
   ~TimedHost();
   TimedHost(const TimedHost&) = delete;
   TimedHost& operator=(const TimedHost&) = delete;
@@ -30,7 +31,7 @@ class TimedHost {
   Host timed_;
 };
 
-/// What the session has learned of an operation, or null.
-std::shared_ptr<const TimeShares> learned_time_shares(const std::string& operation, Session& session);
+/// Of the session's last runs that are alike, the newest at the end; null before the first.
+std::shared_ptr<const std::vector<TimeShares>> learned_time_shares(const std::string& alike, Session& session);
 
 }  // namespace formwright

@@ -19,6 +19,9 @@ namespace formwright {
 using namespace bounded_qp_detail;
 
 namespace {
+// Of the fractions that are reported, where one method follows the other.
+constexpr double share_of_exchange = 0.6, share_of_interior_point = 0.95;
+
 // Of the work that the interior point would take: what an exchange may take before it is given up. It is faster where
 // few constraints hold.
 constexpr double exchange_share = 0.6, exchange_only_share = 20;
@@ -106,6 +109,7 @@ BoundedQp::Implementation::Outcome BoundedQp::Implementation::solve(const Rows& 
     tried = options.max_exchange_work > 0          ? options.max_exchange_work
             : options.method == QpMethod::exchange ? max_work_of_exchange
                                                    : work_of_try;
+    const auto span = context.span(0, options.method == QpMethod::exchange ? 1 : share_of_exchange, "Finding contacts");
     if (exchange_within(tried)) return outcome;
   } else {
     outcome.result.u = Eigen::VectorXd::Zero(rows.size());
@@ -115,9 +119,12 @@ BoundedQp::Implementation::Outcome BoundedQp::Implementation::solve(const Rows& 
   outcome.method = QpMethod::interior_point;
   Stopwatch watch;
   const InteriorPointStart start{so_far.u, so_far.m, so_far.active, so_far.multiplier};
-  const InteriorPointResult point = solve_interior_point(
-      energy, newton, rows, start,
-      {.violation = 0.1 * options.violation_tolerance, .max_iterations = options.max_iterations}, context);
+  const InteriorPointResult point = [&] {
+    const auto span = context.span(share_of_exchange, share_of_interior_point, "Fitting into the thickness");
+    return solve_interior_point(
+        energy, newton, rows, start,
+        {.violation = 0.1 * options.violation_tolerance, .max_iterations = options.max_iterations}, context);
+  }();
   outcome.iterations = point.iterations;
   outcome.result = polish_active_set(energy, newton, rows, point, options.violation_tolerance, context);
   add_up(so_far, outcome.result);

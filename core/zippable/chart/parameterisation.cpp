@@ -199,6 +199,7 @@ class Solver {
   }
 
   bool solve_damped(NewtonStep& step);
+  double iterations_passed(double energy) const;
   void iterate();
   void finish();
 
@@ -221,14 +222,22 @@ bool Solver::solve_damped(NewtonStep& step) {
   return false;
 }
 
+/// The share of the iterations that are done. On the samples, which take 7 to 33, an iteration lowers the energy by a
+/// quarter of a decade while triangles are crumpled, and later the decrement by half a decade.
+double Solver::iterations_passed(double energy) const {
+  constexpr double smooth_energy = 8, energy_decades = 0.23, decrement_decades = 0.5;
+  const double decrement = result_.iterations > 0 ? result_.decrement / energy : 1;
+  const double left = std::max(0.0, std::log10(energy / smooth_energy)) / energy_decades +
+                      std::max(0.0, std::log10(decrement / options_.tolerance)) / decrement_decades;
+  return result_.iterations / (result_.iterations + left + 1);
+}
+
 void Solver::iterate() {
   CornerCoordinates uv = chart_.corners(local_, shared_);
   double value = energy(uv);
   bool try_true = false;
   for (result_.iterations = 0; result_.iterations < options_.iterations_max;) {
-    const double usual_iterations = 40;
-    context_.progress(ordering_share + (1 - ordering_share) * std::min(0.95, result_.iterations / usual_iterations),
-                      "Parameterising");
+    context_.progress(ordering_share + (1 - ordering_share) * iterations_passed(value), "Parameterising");
     NewtonStep step;
     bool solved = false;
     if (try_true) {

@@ -5,10 +5,12 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 
 #include "base/error.h"
 #include "base/index.h"
+#include "numerics/convergence.h"
 
 namespace formwright::bounded_qp_detail {
 
@@ -313,6 +315,7 @@ ExchangeResult ExchangeSolver::run(const Rows& rows, const std::vector<RowKey>& 
   PoolQp qp;
   bool grown = false;
   Rows::Violations violations;
+  std::optional<Convergence> convergence;
   for (;; ++result.rounds) {
     const bool at_rest = result.rounds == 0 && pool_.empty() && base.empty();  // u = 0 is optimal for no constraints
     if (!at_rest) {
@@ -372,7 +375,9 @@ ExchangeResult ExchangeSolver::run(const Rows& rows, const std::vector<RowKey>& 
     if (static_cast<int>(keys.size()) > max_new) keys.resize(index(max_new));  // the worst first
     add_to_pool(rows, keys, context);
     result.seconds.columns += watch.lap();
-    context.progress(static_cast<double>(result.rounds) / (result.rounds + 5), "Finding contacts");
+    // The last rounds find every row that is left at once: seven decades below the first violation.
+    if (!convergence) convergence.emplace(std::max(settings.violation_tolerance, 1e-7 * violations.max));
+    context.progress(convergence->passed(violations.max), "Finding contacts");
   }
   result.violation_max = violations.max;
   result.columns = columns_.count();

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/index.h"
+#include "numerics/convergence.h"
 #include "numerics/qp/interior_point/newton_system.h"
 
 namespace formwright::bounded_qp_detail {
@@ -281,6 +282,7 @@ InteriorPointResult InteriorPoint::run(const InteriorPointSettings& settings, Co
   InteriorPointResult result;
   int small_gaps = 0;
   double open_before = std::numeric_limits<double>::infinity();
+  Convergence convergence(1);
   for (;; ++result.iterations) {
     residuals();
     const double gap = complementarity(), mu = gap / std::max(1.0, count()), energy = energy_.energy(u_);
@@ -302,7 +304,9 @@ InteriorPointResult InteriorPoint::run(const InteriorPointSettings& settings, Co
     result.violation = open;
     result.converged = result.relative_gap <= settings.relative_gap && open <= settings.violation &&
                        unbalanced <= balance_tolerance * force;
-    context.progress(result.iterations / (result.iterations + 10.0), "Fitting into the thickness");
+    const double passed =
+        convergence.passed(std::max(result.relative_gap / settings.relative_gap, open / settings.violation));
+    context.progress(passed, "Fitting into the thickness");
     // What a few more steps do not improve is round-off.
     small_gaps = result.relative_gap <= settings.relative_gap && open > 0.5 * open_before ? small_gaps + 1 : 0;
     // Rows that nearly repeat each other share a force that soft springs move from one to the other only slowly.
@@ -311,6 +315,7 @@ InteriorPointResult InteriorPoint::run(const InteriorPointSettings& settings, Co
     if (small_gaps > steps_after_small_gap) break;
     if (result.converged || result.iterations >= settings.max_iterations || count() == 0) break;
     try {
+      const auto quiet = context.span(passed, passed, "");  // one factorisation of many
       factorize(context);
     } catch (const Error& error) {
       // Multipliers over slacks span more than double precision holds: no better point can be had.

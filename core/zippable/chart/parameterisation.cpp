@@ -214,6 +214,10 @@ class Solver {
   Parameterisation result_;
 };
 
+constexpr const char* not_unrolled =
+    "The parts could not be unrolled: one of them may have limbs of its own, or a very narrow opening. "
+    "Draw a border around each limb, or make the openings larger.";
+
 /// A tube squeezed to a millionth of its size is so much stiffer than the rest that rounding makes the matrix look
 /// singular.
 bool Solver::solve_damped(NewtonStep& step) {
@@ -247,9 +251,7 @@ void Solver::iterate() {
     }
     if (!solved) {
       assemble(uv, true);
-      if (!solve_damped(step))
-        throw Error(ErrorCode::could_not_solve, "mesh",
-                    "The parameterisation did not converge. Try larger openings or fewer, shorter parts.");
+      if (!solve_damped(step)) throw Error(ErrorCode::could_not_solve, "mesh", not_unrolled);
     }
     ++result_.iterations;
     result_.decrement = -step.slope;
@@ -261,9 +263,7 @@ void Solver::iterate() {
     if (!search(step, uv, value)) return;
     try_true = before - value < 0.01 * before;
   }
-  throw Error(ErrorCode::could_not_solve, "mesh",
-              "The parameterisation did not converge in " + std::to_string(options_.iterations_max) +
-                  " iterations. Try larger openings or fewer, shorter parts.");
+  throw Error(ErrorCode::could_not_solve, "mesh", not_unrolled);
 }
 
 void Solver::finish() {

@@ -16,8 +16,13 @@ export function Dialog({ title, onClose, children, wide }: DialogProps) {
   const titleId = useId();
   useEffect(() => {
     const before = document.activeElement as HTMLElement | null;
-    ref.current?.showModal();
-    return () => before?.focus?.();
+    const dialog = ref.current;
+    dialog?.showModal();
+    return () => {
+      // What has taken the focus since then keeps it, such as a tutorial's card.
+      const now = document.activeElement;
+      if (now === null || now === document.body || dialog?.contains(now)) before?.focus?.();
+    };
   }, []);
   return (
     <dialog

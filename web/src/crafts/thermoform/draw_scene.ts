@@ -145,7 +145,8 @@ export function keepDrawn(
     }
     const own = extras().printed?.of === shown ? extras().printed : null;
     // Plain plastic between two pictures would flicker while a slider moves.
-    lastPrinted = own ?? (session.hasColours.value && servesMeanwhile(lastPrinted, shown) ? lastPrinted : null);
+    lastPrinted =
+      own ?? (session.hasColours.value && servesMeanwhile(lastPrinted, shown) ? lastPrinted : null);
     const printed = view.value === 'texture' ? lastPrinted : null;
     if (drawn?.formed === shown && drawn.printed === printed) return;
     viewport.setRelief(sheetData(shown, printed), null);

@@ -26,7 +26,7 @@ constexpr double overdue_weight = 4;
 /// A part that takes longer than it did goes on for half as long again.
 constexpr double overdue_rest = 0.5;
 constexpr double not_done = 0.2;
-/// Below, a factor means nothing to who waits; and a logarithm needs something.
+/// Half a second more or less matters to nobody who waits; and the logarithm of nothing is none.
 constexpr double min_left_s = 0.5, nothing_s = 0.02;
 
 double sum_of(const TimeShares& shares, int begin, int end) {

@@ -54,7 +54,7 @@ function sheetData({ sheet }: Formed, printed: Extras['printed']): MeshData {
   };
 }
 
-/** May the picture of one sheet be seen on another until that has its own? A preview's, of the same model and triangles. */
+/** May the picture of one sheet be shown on the next one until that has its own? Only on a preview of the same model, with as many vertices. */
 export const servesMeanwhile = (printed: Extras['printed'], on: Formed): boolean =>
   printed !== null &&
   on.kind === 'preview' &&

@@ -28,7 +28,7 @@ type Held = { x: number; y: number };
 export class Controls {
   private readonly held = new Map<number, Held>();
   private action: 'none' | 'orbit' | 'pan' | 'kept' = 'none';
-  /** To be told when a kept press is taken away; null: it cannot be. */
+  /** Called when a kept press is taken away; null where it cannot be. */
   private lost: (() => void) | null = null;
   private travelled = 0;
   private rate: [number, number] = [0, 0];

@@ -11,8 +11,8 @@ const missed = 'The line does not cross the model. Drag it across a limb.';
 const open = 'The model has an open edge where the line crosses it: no border can go all around there.';
 const tooCoarse = 'The model has too few triangles for a border there. Drag the line a little further along.';
 
-/** Of the mesh's vertices a border has at least so many beside it on either side: with fewer there is no part. */
-const fewestVertices = 3;
+/** Vertices of the mesh that a border needs on either side: with fewer there is no part. */
+const minVertices = 3;
 
 /** Points of a closed border, or a sentence for the maker. */
 export function ringAcross(
@@ -25,6 +25,6 @@ export function ringAcross(
   const seen = plane && chainAcross(planeSection(positions, indices, plane), plane, sights);
   if (!plane || !seen) return missed;
   if (!seen.chain.closed) return open;
-  if (seen.chain.verticesBeside < fewestVertices) return tooCoarse;
+  if (seen.chain.verticesBeside < minVertices) return tooCoarse;
   return ringPoints(seen, plane, ways());
 }

@@ -97,11 +97,11 @@ export function ringPoints(seen: Seen, plane: Plane, ways: Ways): Place3[] {
   const { length } = measured(seen.chain.points, seen.at);
   const enough = Math.max(seen.chain.edgeLength, allowed * length);
   let best: Place3[] = [];
-  let least = Infinity;
+  let smallest = Infinity;
   for (const count of counts) {
     const points = spread(seen, count);
     const farthest = farthestFrom(plane, points, ways);
-    if (farthest < least) [least, best] = [farthest, points];
+    if (farthest < smallest) [smallest, best] = [farthest, points];
     if (farthest <= enough) break;
   }
   return best;

@@ -3,6 +3,8 @@
 #
 # Sets up, builds and runs what a change must pass, stopping at the first stage that fails. Tests that failed and passed
 # when asked again are named at the end: each is a defect. The last line is "N passed, N failed", summed over all runners.
+# What passed at the first asking is kept in build*/ and counted without running it again while its programs, scripts and
+# data are the same (setup/passed_before.py); FORMWRIGHT_PASSED_BEFORE=forget runs everything.
 #   setup/test.sh [--all]   with --all the crafts' own tests run with sanitizers and in WebAssembly, too, and the reliability
 #                           tests in their long forms
 set -euo pipefail
@@ -20,6 +22,7 @@ FAILED=0
 COMPLETE=no  # until the last stage has passed; an interruption is a failure
 FLAKY=()
 LOG="$(mktemp)"
+STORIES_LOG="$(mktemp)"
 BESIDE=''         # process group of what is built while other stages run
 BESIDE_LOG="$(mktemp)"
 BESIDE_START=0
@@ -28,7 +31,7 @@ BESIDE_STATUS=0
 
 finish() {
   [ -z "$BESIDE" ] || kill -- "-$BESIDE" 2>/dev/null || true
-  rm -f "$LOG" "$BESIDE_LOG"
+  rm -f "$LOG" "$STORIES_LOG" "$BESIDE_LOG"
   if [ "$COMPLETE" = no ] && [ "$FAILED" -eq 0 ]; then FAILED=1; fi
   if [ "$PASSED" -eq 0 ] && [ "$FAILED" -eq 0 ]; then FAILED=1; fi
   if [ ${#FLAKY[@]} -gt 0 ]; then
@@ -92,7 +95,23 @@ show_beside() {
   return "$BESIDE_STATUS"
 }
 
-run_stories() { FORMWRIGHT_BACKEND="$1" npm run e2e; }
+forgets() { [ "${FORMWRIGHT_PASSED_BEFORE-}" = forget ]; }
+
+# What the stories run is the page, both ways to solve, and themselves.
+run_stories() {  # wasm or native
+  local record="build/stories_$1" hash known='' count='' status=0
+  hash="$(setup/passed_before.py hash e2e web/dist package-lock.json build/formwright)"
+  if ! forgets && [ -e "$record" ]; then read -r known count <"$record"; fi
+  if [ "$known" = "$hash" ]; then
+    echo "$count tests passed before with the same programs and data"
+    return
+  fi
+  rm -f "$record"
+  FORMWRIGHT_BACKEND="$1" npm run e2e 2>&1 | tee "$STORIES_LOG" || status=$?
+  read -r count _ < <(count_playwright "$STORIES_LOG")
+  if [ "$status" -eq 0 ] && [ -z "$(flaky_playwright "$STORIES_LOG")" ]; then echo "$hash $count" >"$record"; fi
+  return "$status"
+}
 
 # What failed, again and last: where only the end of a log is seen, it is what is needed.
 show_failed() {  # folder of a build
@@ -103,7 +122,17 @@ show_failed() {  # folder of a build
 # Tests run side by side, and some drive real programs that have limits of time of their own. What fails is shown and asked once more, alone; what
 # passes then is named at the end.
 run_ctest() {  # preset, folder of its build
-  ctest --preset "$1" --parallel "${FORMWRIGHT_JOBS:-$(nproc)}" && return
+  local numbers status=0 all
+  if forgets; then rm -f "$2/passed_before.json"; fi
+  numbers="$(setup/passed_before.py tests "$2" --preset "$1")"
+  all="$(ctest --preset "$1" -N | sed -n 's/^Total Tests: //p')"
+  echo "$((all - $(wc -w <<<"$numbers"))) tests passed before with the same programs and data"
+  [ -n "$numbers" ] || return 0
+  # CTest reads numbers behind "start,end,stride", which choose nothing here.
+  ctest --preset "$1" --parallel "${FORMWRIGHT_JOBS:-$(nproc)}" -I "0,0,0,$(paste -s -d , <<<"$numbers")" \
+    --output-junit junit.xml || status=$?
+  setup/passed_before.py keep "$2" "$2/junit.xml"
+  [ "$status" -ne 0 ] || return 0
   show_failed "$2"
   printf '\n=== once more, alone\n'
   ctest --preset "$1" --rerun-failed && return

@@ -4,6 +4,9 @@
 # count_RUNNER prints "passed failed" (skipped tests are neither); flaky_RUNNER prints the names of tests that failed and
 # passed when asked again, one a line.
 
+# A stage that need not run again says so.
+count_before() { sed -nE 's/^([0-9]+) tests passed before .*/\1/p' "$1" | sum; }
+
 sum() { awk '{ total += $1 } END { print total + 0 }'; }
 
 # How many there are the first run says, what has failed the last one.
@@ -12,7 +15,7 @@ count_ctest() {  # log
   read -r _ all < <(sed -nE 's/^[0-9]+% tests passed, ([0-9]+) tests? failed out of ([0-9]+)$/\1 \2/p' "$1" | head -n 1) || true
   read -r failed _ < <(sed -nE 's/^[0-9]+% tests passed, ([0-9]+) tests? failed out of ([0-9]+)$/\1 \2/p' "$1" | tail -n 1) || true
   skipped="$(grep -cE '^ *[0-9]+/[0-9]+ Test .*\*\*\*(Skipped|Not Run)' "$1" || true)"
-  echo "$((${all:-0} - ${failed:-0} - skipped)) ${failed:-0}"
+  echo "$((${all:-0} - ${failed:-0} - skipped + $(count_before "$1"))) ${failed:-0}"
 }
 
 # Names in the first run's list of failures that are not in the last one's; nothing when it was run once.
@@ -40,7 +43,7 @@ count_vitest() {  # log
 flaky_vitest() { sed -n 's/^passed when asked again: //p' "$1"; }  # web/scripts/flaky_reporter.ts
 
 count_playwright() {  # log
-  echo "$(grep -oE '^ +[0-9]+ (passed|flaky)' "$1" | sum) $(grep -oE '^ +[0-9]+ (failed|did not run|interrupted)' "$1" | sum)"
+  echo "$(($(grep -oE '^ +[0-9]+ (passed|flaky)' "$1" | sum) + $(count_before "$1"))) $(grep -oE '^ +[0-9]+ (failed|did not run|interrupted)' "$1" | sum)"
 }
 flaky_playwright() {  # log; names are indented below "N flaky"
   awk '/^ +[0-9]+ (passed|failed|skipped|did not run|interrupted)/ { listed = 0 }

@@ -13,6 +13,7 @@
 #include "relief/appearance_energy.h"
 #include "relief/balanced_relief.h"
 #include "relief/base/depth_bounds.h"
+#include "relief/base/cut_into_parts.h"
 #include "relief/baselines.h"
 #include "relief/view/outline.h"
 
@@ -271,24 +272,35 @@ int ReliefSolver::balance(const ReliefOptions& options, const DepthBounds& bound
 Relief ReliefSolver::solve(const ReliefOptions& options, const BaseSurface& base, Context& context,
                            const Painting& painting) {
   const DepthBounds bounds = depth_bounds(frame_, visibility_, base, options, context, painting);
+  if (const BaseParts* const parts = base.parts())
+    return solve_within(
+        options, bounds,
+        [&](const Eigen::VectorXd& u, const Eigen::VectorXd& m) {
+          return cut_into_parts(frame_, F_, u, m, bounds, *parts, context);
+        },
+        context);
   if (bounds.groups == 1) return solve_within(options, bounds, nullptr, context);
-  const BandBorders borders(frame_, *base.bands(), bounds);
-  return solve_within(options, bounds, &borders, context);
+  return solve(options, bounds, BandBorders(frame_, *base.bands(), bounds), context);
 }
 
 Relief ReliefSolver::solve(const ReliefOptions& options, const DepthBounds& bounds, const GroupBorders& borders,
                            Context& context) {
-  return solve_within(options, bounds, &borders, context);
+  return solve_within(
+      options, bounds,
+      [&](const Eigen::VectorXd& u, const Eigen::VectorXd& m) {
+        return cut_into_bands(frame_, F_, u, m, bounds, borders, context);
+      },
+      context);
 }
 
-Relief ReliefSolver::solve_within(const ReliefOptions& options, const DepthBounds& bounds, const GroupBorders* borders,
+Relief ReliefSolver::solve_within(const ReliefOptions& options, const DepthBounds& bounds, const Cut& cut,
                                   Context& context) {
   BoundedQpConstraints constraints = constraints_of(frame_, bounds);
   const double slab = (options.thickness_mm + options.carve_depth_mm) / options.width_mm;
-  if (options.appearance == Appearance::balanced && borders != nullptr)
+  if (options.appearance == Appearance::balanced && cut != nullptr)
     throw Error(
         ErrorCode::invalid_input, "appearance",
-        "On a base in steps or strips the relief is made with the appearance \"detail\" only: choose it, or another base.");
+        "On a base in steps, strips or parts the relief is made with the appearance \"detail\" only: choose it, or another base.");
   // On a plate lent, not copied: at 300k vertices the rows are tens of megabytes.
   const bool lent = bounds.even;
   struct Lent {
@@ -329,12 +341,12 @@ Relief ReliefSolver::solve_within(const ReliefOptions& options, const DepthBound
   context.progress(0.9, "Comparing normals");
   relief.moved = frame_.moved(relief.u);
   // In steps, the parts look from the viewpoint as the surface does in one piece.
-  const bool in_steps = borders != nullptr;
+  const bool in_steps = cut != nullptr;
   const Eigen::VectorXd& looked_at = in_steps ? relief.qp.u : relief.u;
   relief.energy = (*energy_)(looked_at);
   relief.seen = in_steps ? frame_.moved(looked_at) : relief.moved;
   relief.normal_error = normal_error(frame_, F_, visibility_, relief.seen);
-  if (in_steps) relief.pieces = cut_into_bands(frame_, F_, relief.qp.u, m, bounds, *borders, context);
+  if (in_steps) relief.pieces = cut(relief.qp.u, m);
   const bool own_bounds = in_steps || bounds.painted();
   ReliefOptions even = options;  // the baseline fills the thickness, whatever is free here
   even.only_outline = false;

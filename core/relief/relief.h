@@ -2,6 +2,7 @@
 #pragma once
 // Appearance-mimicking surfaces, thesis chapter 3: the relief that looks like the model from one viewpoint and
 // stays within hard bounds.
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -33,7 +34,7 @@ struct Relief {
   int balanced_steps = 0;        // of BalancedSolver; 0 for Appearance::detail
   Positions seen,
       seen_linear;      // n x 3, what looks like the model: `moved`, in steps before it is cut; and plain scaling
-  ReliefPieces pieces;  // on a base in steps; else empty
+  ReliefPieces pieces;  // on a base in steps or parts; else empty
   Eigen::VectorXd above_mm, below_mm;  // where limits of depth are painted, else empty: of each vertex of `moved` or of
                                        // the pieces, how far it may be before the base and behind it
   BoundedQpSolution qp;                // statistics; qp.u is in the gauge of mean s = 1
@@ -54,8 +55,8 @@ class ReliefSolver {
 
   /// `base`: in view coordinates, of the same options. `painting`: its regions and depths count; its weights are those
   /// that the solver was made with.
-  /// Throws Error: invalid_input (see depth_bounds; the balanced appearance on a base in steps), could_not_solve,
-  /// cancelled.
+  /// Throws Error: invalid_input (see depth_bounds; the balanced appearance on a base in steps or parts),
+  /// could_not_solve, cancelled.
   Relief solve(const ReliefOptions& options, const BaseSurface& base, Context& context, const Painting& painting = {});
   /// On a base in parts that move in groups: `bounds` as depth_bounds would give them for it. The appearance must be
   /// `detail`. `Relief::pieces` has the parts, `Relief::seen` the surface before it is cut.
@@ -71,8 +72,9 @@ class ReliefSolver {
   double memory_mb() const;
 
  private:
-  Relief solve_within(const ReliefOptions& options, const DepthBounds& bounds, const GroupBorders* borders,
-                      Context& context);
+  /// `cut`: divides the joint surface `u` of parts with the scales `m`; null where it is one.
+  using Cut = std::function<ReliefPieces(const Eigen::VectorXd& u, const Eigen::VectorXd& m)>;
+  Relief solve_within(const ReliefOptions& options, const DepthBounds& bounds, const Cut& cut, Context& context);
   BoundedQpSolution solve_on_base(BoundedQpConstraints& constraints, const DepthBounds& bounds,
                                   const BoundedQpOptions& options, Context& context);
   /// Moves `u` from the optimum of eq. (3.13) to the balanced relief; the number of steps.

@@ -61,6 +61,12 @@ class Counts(unittest.TestCase):
         self.assertEqual(self.call("count_ctest", CTEST_FIRST + CTEST_AGAIN_NONE), "3 0\n")
         self.assertEqual(self.call("count_ctest", "ninja: error\n"), "0 0\n")
 
+    def test_what_passed_before_counts(self):
+        before = "1385 tests passed before with the same programs and data\n"
+        self.assertEqual(self.call("count_ctest", before), "1385 0\n")
+        self.assertEqual(self.call("count_ctest", before + CTEST_FIRST), "1386 2\n")
+        self.assertEqual(self.call("count_playwright", "115 tests passed before with the same programs and data\n"), "115 0\n")
+
     def test_ctests_that_pass_when_asked_again_are_named(self):
         self.assertEqual(self.call("flaky_ctest", CTEST_FIRST), "")
         self.assertEqual(self.call("flaky_ctest", CTEST_FIRST + CTEST_AGAIN_ONE), "native_worker.machine_marlin\n")

@@ -195,7 +195,7 @@ TEST_CASE("AlikeRuns.NamesTheSwitchesThatAreNotAsUsual") {
   CHECK(alike_runs(*relief, Json::array()) == "relief");
   // Runs that nobody measured with a switch are compared with those without it.
   CHECK(usual_time_shares("relief no_such=true").size() == usual_time_shares("relief").size());
-  CHECK(usual_time_shares("evidence-diagnose pairs=false").size() < usual_time_shares("evidence-diagnose").size());
+  CHECK(usual_time_shares("evidence-diagnose pairs=false") != usual_time_shares("evidence-diagnose"));
 }
 
 TEST_CASE("TimedHost.SpeaksWhileTheJobOnlyAsksWhetherToEndAndLearnsFromIt") {

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Reliefs on stairs and strips in pieces on the command line: all files by readers of our own.
+"""Reliefs on stairs, strips and a base of several parts in pieces on the command line: all files by readers of our own.
 Usage: relief_pieces_test.py PROGRAM"""
 import json
 import math
@@ -23,6 +23,21 @@ FILES = "pieces.zip,pieces.3mf,pieces.glb,placement.svg,placement.pdf,relief.ply
 STAIRS = ("--base", "stairs", "--base-depth-mm", "40", "--base-steps", "4", "--thickness-mm", "4")
 STRIPS = ("--base", "strips", "--base-steps", "5", "--thickness-mm", "2")
 ZIGZAG = (*STRIPS, "--base-bend", "zigzag", "--carve-depth-mm", "1")
+
+
+def blocks(path, *boxes):
+    """An OBJ of boxes, each from its lower to its upper corner."""
+    faces = [(1, 3, 2), (2, 3, 4), (5, 6, 7), (6, 8, 7), (1, 2, 5), (2, 6, 5), (3, 7, 4), (4, 7, 8), (1, 5, 3), (3, 5, 7), (2, 4, 6), (4, 8, 6)]
+    lines = []
+    for k, box in enumerate(boxes):
+        lines += ["v " + " ".join(str(box[corner >> axis & 1][axis]) for axis in range(3)) for corner in range(8)]
+        lines += ["f " + " ".join(str(v + 8 * k) for v in face) for face in faces]
+    path.write_text("\n".join(lines) + "\n")
+    return ("--base-mesh", path)
+
+
+WALL = ((-120, -120, -60), (120, 120, -30))
+POST = ((-15, -120, -25), (20, 10, -5))
 
 
 def objects_of_3mf(path):
@@ -82,7 +97,8 @@ def depth_picture(triangles, eye_mm, half_width_mm, half_height_mm):
 class ReliefPieces(unittest.TestCase):
     def setUp(self):
         self.temporary = tempfile.TemporaryDirectory()
-        self.out = pathlib.Path(self.temporary.name) / "out"
+        self.folder = pathlib.Path(self.temporary.name)
+        self.out = self.folder / "out"
         self.addCleanup(self.temporary.cleanup)
 
     def relief(self, *words):
@@ -113,8 +129,36 @@ class ReliefPieces(unittest.TestCase):
                         self.assertEqual(unpaired, 0, name)
                         self.assertAlmostEqual(volume / 1000, piece["volume_ml"], delta=1e-3)
 
+    def test_blocks_of_a_file_become_pieces(self):
+        base = blocks(self.folder / "blocks.obj", WALL, POST, ((60, 60, -20), (90, 90, -10)))
+        report = self.made(*base, "--thickness-mm", "4", "--carve-depth-mm", "1")
+        self.assertEqual((report["base_parts"], report["pieces_watertight"]), (3, True))
+        own_ml = [240 * 240 * 30 / 1000, 35 * 130 * 20 / 1000, 30 * 30 * 10 / 1000]
+        placed = dict(objects_of_3mf(self.out / "pieces.3mf"))
+        drawn = dict(objects_of_glb((self.out / "pieces.glb").read_bytes()))
+        # All stand in the row of the wall, from left to right.
+        for piece, ml in zip(report["pieces"], own_ml):
+            self.assertTrue(piece["numbered"])
+            for triangles in (placed[f"Piece {piece['number']}"], drawn[f"Piece {piece['number']}"]):
+                unpaired, volume = unpaired_and_volume(triangles)
+                self.assertEqual(unpaired, 0)
+                self.assertAlmostEqual(volume / 1000, piece["volume_ml"], delta=1e-3)
+            self.assertLess(abs(piece["volume_ml"] / ml - 1), 0.25)
+        low, high = POST
+        corners = [p for triangle in placed["Piece 2"] for p in triangle]
+        for axis in range(3):
+            self.assertAlmostEqual(min(p[axis] for p in corners), low[axis], delta=1e-3)
+            self.assertAlmostEqual(max(p[axis] for p in corners), high[axis] + (4 if axis == 2 else 0), delta=0.5)
+        svg = (self.out / "placement.svg").read_text()
+        for view in ("piece", "above", "right"):
+            self.assertEqual(len(re.findall(f'id="{view}-[123]"', svg)), 3)
+        # As one surface it is one relief without pieces.
+        run = self.relief(*base, "--base-mesh-parts", "together", "--outputs", "relief.stl,pieces.zip")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertFalse((self.out / "pieces.zip").exists())
+
     def test_the_picture_from_the_viewpoint_is_whole(self):
-        for flags in (STAIRS, STRIPS, ZIGZAG):
+        for flags in (STAIRS, STRIPS, ZIGZAG, (*blocks(self.folder / "blocks.obj", WALL, POST), "--thickness-mm", "4")):
             report = self.made(*flags)
             eye, (width, height, _) = report["distance_mm"], report["size_mm"]
             solids = [t for _, triangles in objects_of_3mf(self.out / "pieces.3mf") for t in triangles]
@@ -158,7 +202,10 @@ class ReliefPieces(unittest.TestCase):
         self.assertTrue((self.out / "placement.pdf").read_bytes().startswith(b"%PDF"))
 
     def test_what_cannot_be_is_refused_in_a_sentence(self):
+        touching = ((-15, -120, -40), (20, 10, -5))
         for words, flags in (("This base is one piece", ("--outputs", "pieces.zip")),
+                             ("This base is one piece", (*blocks(self.folder / "one.obj", WALL), "--outputs", "pieces.zip")),
+                             ("Parts 1 and 2 of the base overlap", (*blocks(self.folder / "two.obj", WALL, touching), "--outputs", "pieces.zip")),
                              ("seen from its edge", (*STRIPS, "--base-fold-deg", "40", "--outputs", "pieces.zip"))):
             run = self.relief(*flags)
             self.assertEqual(run.returncode, 2, run.stderr)

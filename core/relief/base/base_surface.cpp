@@ -24,8 +24,12 @@ std::vector<Vec3> clipped(const std::vector<Vec3>& polygon, int axis, double sid
 
 }  // namespace
 
-BaseSurface::BaseSurface(const TriangleMesh& mesh, std::optional<BaseBands> bands)
-    : mesh_(mesh), bands_(std::move(bands)), caster_(std::make_shared<const RayCaster>(mesh)) {
+BaseSurface::BaseSurface(const TriangleMesh& mesh, std::optional<BaseBands> bands,
+                         std::shared_ptr<const BaseParts> parts)
+    : mesh_(mesh),
+      bands_(std::move(bands)),
+      parts_(std::move(parts)),
+      caster_(std::make_shared<const RayCaster>(mesh)) {
   front_ = std::min(0.0, mesh.V.col(2).minCoeff()) - 1;
   far_ = 4 * (mesh.V.rowwise().norm().maxCoeff() + 1) - front_;
 }

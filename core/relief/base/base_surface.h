@@ -7,6 +7,7 @@
 
 #include "geometry/queries/ray_caster.h"
 #include "relief/base/base_bands.h"
+#include "relief/base/base_parts.h"
 #include "relief/view/view_frame.h"
 
 namespace formwright {
@@ -16,12 +17,17 @@ class BaseSurface {
  public:
   BaseSurface() = default;
   /// `mesh`: at least one triangle, open or closed; of what lies behind each other the foremost counts.
-  /// `bands`: of a base in steps or strips, whose planes and the walls between them the mesh has.
-  explicit BaseSurface(const TriangleMesh& mesh, std::optional<BaseBands> bands = std::nullopt);
+  /// `bands`: of a base in steps or strips, whose planes and the walls between them the mesh has. `parts`: of a base
+  /// in several parts, the same mesh.
+  explicit BaseSurface(const TriangleMesh& mesh, std::optional<BaseBands> bands = std::nullopt,
+                       std::shared_ptr<const BaseParts> parts = nullptr);
 
   bool is_flat() const { return caster_ == nullptr; }
   /// Null where it has neither steps nor strips.
   const BaseBands* bands() const { return bands_ ? &*bands_ : nullptr; }
+
+  /// Null where it is one.
+  const BaseParts* parts() const { return parts_.get(); }
 
   /// The largest length along z of one unit of length along the base's normal where thickness is counted along it: on
   /// strips. Else 1.
@@ -43,6 +49,7 @@ class BaseSurface {
  private:
   TriangleMesh mesh_;
   std::optional<BaseBands> bands_;
+  std::shared_ptr<const BaseParts> parts_;
   std::shared_ptr<const RayCaster> caster_;
   double front_ = 0, far_ = 0;  // before everything, and a distance beyond everything from there
 };

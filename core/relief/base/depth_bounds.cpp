@@ -5,9 +5,11 @@
 #include <atomic>
 #include <cmath>
 #include <string>
+#include <tuple>
 
 #include "base/parallel.h"
 #include "relief/base/painted_bounds.h"
+#include "relief/view/straight_view.h"
 
 namespace formwright {
 namespace {
@@ -24,6 +26,60 @@ void refuse_misses(const DepthBounds& bounds, int asked, const ReliefOptions& op
         ErrorCode::invalid_input, "base_misses",
         "The base ends before the model does: " + std::to_string(bounds.missed) + " of " + std::to_string(asked) +
             " vertices have no base behind them. Make the base larger, the relief narrower, or let these vertices go free.");
+}
+
+struct MetPart {
+  int part;
+  std::optional<Vec2> limits;  // nearest and farthest depth; nothing on a face that carries no relief
+};
+std::optional<MetPart> part_on_ray(const BaseParts& parts, const ViewFrame& frame, Eigen::Index vertex, double above,
+                                   double below) {
+  const Vec3 p = frame.P.row(vertex).transpose();
+  const Vec2 on_plate = straightened(p, frame.kappa).head<2>();
+  const auto hit = parts.foremost(on_plate);
+  if (!hit) return std::nullopt;
+  if (!hit->carries) return MetPart{hit->part, std::nullopt};
+  const auto passage = parts.passage(hit->part, on_plate);
+  if (!passage) return std::nullopt;
+  return MetPart{hit->part, BaseParts::limits(*passage, above, below)};
+}
+
+/// What lies beside all that carries is left out in the end. Free, it could go to any depth and take what is held with
+/// it: so it moves with the part whose picture is nearest, within that part's depths.
+void hold_beside(const BaseParts& parts, const ViewFrame& frame, const std::vector<char>& beside, DepthBounds& bounds) {
+  struct Space {
+    Vec2 low, high;  // of the box of what is seen of it
+    double nearest = INFINITY, farthest = -INFINITY;
+  };
+  std::vector<Space> spaces(static_cast<std::size_t>(parts.count()));
+  for (int part = 0; part < parts.count(); ++part) {
+    Space& space = spaces[static_cast<std::size_t>(part)];
+    if (!parts.seen(part).empty()) std::tie(space.low, space.high) = parts.seen(part).box();
+  }
+  for (std::size_t i = 0; i < beside.size(); ++i) {
+    if (!bounds.bounded[i]) continue;
+    Space& space = spaces[static_cast<std::size_t>(bounds.group[i])];
+    space.nearest = std::min(space.nearest, bounds.nearest[static_cast<Eigen::Index>(i)]);
+    space.farthest = std::max(space.farthest, bounds.farthest[static_cast<Eigen::Index>(i)]);
+  }
+  for (std::size_t i = 0; i < beside.size(); ++i) {
+    if (!beside[i]) continue;
+    const auto vertex = static_cast<Eigen::Index>(i);
+    const Vec3 p = frame.P.row(vertex).transpose();
+    const Vec2 on_plate = straightened(p, frame.kappa).head<2>();
+    double least = INFINITY;
+    for (std::size_t k = 0; k < spaces.size(); ++k) {
+      const Space& space = spaces[k];
+      if (!(space.nearest < space.farthest)) continue;
+      const double away = (on_plate - on_plate.cwiseMax(space.low).cwiseMin(space.high)).norm();
+      if (!(away < least)) continue;
+      least = away;
+      bounds.group[i] = static_cast<int>(k);
+      bounds.nearest[vertex] = space.nearest;
+      bounds.farthest[vertex] = space.farthest;
+      bounds.bounded[i] = 1;
+    }
+  }
 }
 
 }  // namespace
@@ -46,6 +102,7 @@ DepthBounds depth_bounds(const ViewFrame& frame, const Visibility& visibility, c
   bounds.below = carve;
   const BaseBands* const bands = base.bands();
   if (bands != nullptr) bounds.groups = bands->count();
+  if (base.parts() != nullptr) bounds.groups = base.parts()->count();
   const double outline = options.outline_mm.value_or(options.only_outline ? 0 : INFINITY) / options.width_mm;
   const bool tied = outline < std::max(thickness, carve);
   const bool painted = bounds.above_of.size() > 0;
@@ -72,25 +129,44 @@ DepthBounds depth_bounds(const ViewFrame& frame, const Visibility& visibility, c
     }
   if (!base.is_flat()) {
     std::atomic<int> missed = 0;
+    std::vector<char> beside(n, 0);  // of what carries
     parallel_for(n, vertices_a_chunk, [&](std::size_t begin, std::size_t end) {
       context.check_cancelled();
       for (std::size_t i = begin; i < end; ++i) {
         const auto vertex = static_cast<Eigen::Index>(i);
-        const auto nearest = base.depth_on_ray(frame, vertex, -above(i)),
-                   farthest = base.depth_on_ray(frame, vertex, below(i));
+        std::optional<double> nearest, farthest;
+        if (base.parts() != nullptr) {
+          if (const auto met = part_on_ray(*base.parts(), frame, vertex, above(i), below(i))) {
+            bounds.group[i] = met->part;
+            if (met->limits) {
+              nearest = (*met->limits)[0];
+              farthest = (*met->limits)[1];
+            } else if (bounds.bounded[i]) {
+              bounds.bounded[i] = 0;
+              beside[i] = 1;
+            }
+          }
+        } else {
+          nearest = base.depth_on_ray(frame, vertex, -above(i));
+          farthest = base.depth_on_ray(frame, vertex, below(i));
+        }
         if (bands != nullptr) bounds.group[i] = bands->of_ray(frame, frame.P.row(vertex).transpose());
         if (nearest && farthest) {
           bounds.nearest[vertex] = *nearest;
           bounds.farthest[vertex] = std::max(*nearest, *farthest);
         } else if (bounds.bounded[i]) {
           bounds.bounded[i] = 0;
-          if (painting.region_of(vertex) != PaintedRegion::free) ++missed;
+          if (painting.region_of(vertex) == PaintedRegion::free) continue;
+          ++missed;
+          beside[i] = 1;
         }
       }
     });
     bounds.missed = missed;
-    const auto held = static_cast<int>(std::ranges::count(bounds.bounded, 1));
+    const auto held =
+        static_cast<int>(std::ranges::count(bounds.bounded, 1) + std::ranges::count(beside, 1)) - bounds.missed;
     refuse_misses(bounds, held + bounds.missed, options);
+    if (base.parts() != nullptr) hold_beside(*base.parts(), frame, beside, bounds);
   }
   if (frame.kappa * -bounds.nearest.minCoeff() >= 0.5)
     throw Error(

@@ -46,6 +46,14 @@ struct EnumNames<BaseMisses> {
   static constexpr std::array<std::string_view, 2> labels{"Refuse", "Leave free"};
 };
 
+/// How parts of a base from a file that do not hang together are taken.
+enum class PartsOfBase { apart, together };
+template <>
+struct EnumNames<PartsOfBase> {
+  static constexpr std::array<std::string_view, 2> names{"apart", "together"};
+  static constexpr std::array<std::string_view, 2> labels{"Each by itself", "As one surface"};
+};
+
 /// What a relief is made of between its surface and its plate.
 enum class SolidKind { filled, thick };
 template <>
@@ -103,6 +111,7 @@ struct ReliefOptions {
   double base_mesh_y_mm = 0;
   double base_mesh_z_mm = 0;
   double base_mesh_turn_deg = 0;
+  PartsOfBase base_mesh_parts = PartsOfBase::apart;
   BaseMisses base_misses = BaseMisses::refused;
   Projection projection = Projection::perspective;
   std::array<double, 3> direction{0, 0, -1};
@@ -199,6 +208,10 @@ struct ReliefOptions {
                 180, "Turns a base from a file about its own origin, counter-clockwise as seen from the viewpoint.")
           .group("Base")
           .slider(-180, 180),
+      parameter(
+          "base_mesh_parts", &ReliefOptions::base_mesh_parts, "Parts of the base",
+          "For a base from a file in parts that do not hang together: each part carries what is seen before it, in the full thickness and as a piece of its own, or all carry one surface.")
+          .group("Base"),
       parameter(
           "base_misses", &ReliefOptions::base_misses, "Where the base ends",
           "For a base from a file that is smaller than the model: refuse it, or leave the parts without a base behind them free in depth.")

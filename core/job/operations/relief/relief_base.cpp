@@ -29,8 +29,13 @@ std::shared_ptr<const LoadedModel> load_base(const OperationCall& call, const Re
   return load_model(call, base_file);
 }
 
-BaseSurface relief_base(const LoadedModel* file, const ReliefOptions& options, const ViewFrame& frame) {
-  if (file != nullptr) return BaseSurface(base_from_file(file->model.mesh, options));
+BaseSurface relief_base(const LoadedModel* file, const ReliefOptions& options, const ViewFrame& frame,
+                        Context& context) {
+  if (file != nullptr) {
+    const TriangleMesh mesh = base_from_file(file->model.mesh, options);
+    if (options.base_mesh_parts == PartsOfBase::together || count_base_parts(mesh) == 1) return BaseSurface(mesh);
+    return BaseSurface(mesh, std::nullopt, std::make_shared<const BaseParts>(mesh, frame.kappa, context));
+  }
   if (options.base == BaseShape::flat) return {};
   return BaseSurface(base_shape(options, frame), base_bands(options, frame));
 }

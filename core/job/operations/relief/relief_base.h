@@ -16,7 +16,9 @@ InputInfo base_input_info();
 /// model.
 std::shared_ptr<const LoadedModel> load_base(const OperationCall& call, const ReliefOptions& options);
 
-/// In view coordinates; `file` as load_base has it. Throws Error{invalid_input}: see base_shape and base_from_file.
-BaseSurface relief_base(const LoadedModel* file, const ReliefOptions& options, const ViewFrame& frame);
+/// In view coordinates; `file` as load_base has it. Throws Error{invalid_input}: see base_shape, base_from_file and
+/// BaseParts.
+BaseSurface relief_base(const LoadedModel* file, const ReliefOptions& options, const ViewFrame& frame,
+                        Context& context);
 
 }  // namespace formwright

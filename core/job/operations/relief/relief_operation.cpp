@@ -13,7 +13,9 @@
 #include "job/contract/operation_options.h"
 #include "job/operations/relief/painting/painted_report.h"
 #include "job/operations/relief/painting/painting_file.h"
+#include "job/operations/relief/pieces/parts_plan.h"
 #include "job/operations/relief/pieces/piece_files.h"
+#include "job/operations/relief/pieces/placement_plan.h"
 #include "job/operations/relief/relief_base.h"
 #include "job/operations/relief/solved_relief.h"
 #include "job/operations/relief/thick_output.h"
@@ -76,6 +78,8 @@ std::vector<ReportField> relief_report_fields() {
        "Number of conditions that contradict the limits of depth, where the base bends by more than the relief is thick."},
       {"vertices_beyond_base", "Vertices beyond the base", "",
        "Number of vertices that have no base behind them and are free in depth."},
+      {"base_parts", "Parts of the base", "",
+       "Number of parts of a base from a file, each of which carries what is seen before it; 1 where the base is one."},
       {"painted_vertices", "Painted vertices", "",
        "Number of vertices of each kind that is painted: matters_more, matters_less, free, on_base, own_thickness. Only with a painting."},
       {"stands_out_max_mm", "Largest height above the base", "mm",
@@ -252,19 +256,32 @@ std::vector<std::string> notes_of(const Relief& relief) {
   return notes;
 }
 
+void add_notes_on_parts(const BaseParts& parts, const Relief& relief, std::vector<std::string>& notes) {
+  int hidden = 0;
+  for (int part = 0; part < parts.count(); ++part) hidden += parts.seen(part).empty();
+  if (hidden > 0)
+    notes.push_back(std::to_string(hidden) + (hidden == 1 ? " part" : " parts") +
+                    " of the base cannot be seen from the viewpoint, and will be no pieces.");
+  if (relief.vertices_beyond_base > 0)
+    notes.push_back("What the model has between the parts of the base or beside them is left out.");
+}
+
 /// A job that asks for all files gets those that there are. One that asks for nothing but pieces is refused where there
 /// are none.
-void check_pieces(const OperationCall& call, const ReliefOptions& options) {
-  if (options.base == BaseShape::stairs || options.base == BaseShape::strips || !wants_pieces(call)) return;
+void check_pieces(const OperationCall& call, bool in_pieces) {
+  if (in_pieces || !wants_pieces(call)) return;
   for (const OutputInfo& info : relief_outputs())
     if (call.wants(info.name)) return;
   throw Error(ErrorCode::invalid_input, "base",
-              "This base is one piece: choose stairs or strips as its shape, or ask for other files.");
+              "This base is one piece: choose stairs or strips as its shape, give a file of several parts, or ask for "
+              "other files.");
 }
 
 OperationResult run_relief(const OperationCall& call, const ReliefOptions& options) {
   Context& context = call.context;
-  check_pieces(call, options);
+  const bool may_have_pieces = options.base == BaseShape::stairs || options.base == BaseShape::strips ||
+                               call.inputs.contains(base_input_info().name);
+  check_pieces(call, may_have_pieces);
   check_thick_surface(call, options);
   const SolvedRelief solved = [&] {
     const auto span = context.span(0, 0.9, "Reading the model");
@@ -273,6 +290,7 @@ OperationResult run_relief(const OperationCall& call, const ReliefOptions& optio
   const std::shared_ptr<const LoadedModel>& loaded = solved.loaded;
   const std::shared_ptr<ReliefSolver>& solver = solved.solver;
   const Relief& relief = solved.relief;
+  check_pieces(call, solved.base.bands() != nullptr || solved.base.parts() != nullptr);
   Stopwatch watch;
 
   context.progress(0.9, "Writing");
@@ -291,6 +309,9 @@ OperationResult run_relief(const OperationCall& call, const ReliefOptions& optio
           .value_or(std::pair{0.0, 0.0});
   const double range_mm = options.width_mm * (base_depth.second - base_depth.first) +
                           solved.base.max_along_z() * (space.above_mm + space.below_mm);
+  const BaseParts* const parts = solved.base.parts();
+  report["base_parts"] = parts != nullptr ? parts->count() : 1;
+  if (parts != nullptr) add_notes_on_parts(*parts, relief, notes);
   const Painting& painting = solved.painted.painting;
   if (!painting.empty()) report["painted_vertices"] = painted_vertices(painting);
   if (!painting.empty() || options.only_outline) report["stands_out_max_mm"] = space.above_mm;
@@ -358,12 +379,19 @@ OperationResult run_relief(const OperationCall& call, const ReliefOptions& optio
     for (const char* name : {"relief.stl", "relief.3mf", "relief.obj"})
       if (call.wants(name)) add(name, write_model(solid, *mesh_format_of_extension(name), context));
   }
-  if (wants_pieces(call) && solved.base.bands() != nullptr) {
+  if (wants_pieces(call)) {
     const auto span = context.span(0.9, 1, "Making the pieces");
-    add_piece_files(call,
-                    tiled_relief(frame, *solved.base.bands(), relief.pieces, plate, options,
-                                 solid_tolerance_share * options.thickness_mm, true, context),
-                    *solved.base.bands(), result);
+    const double tolerance_mm = solid_tolerance_share * options.thickness_mm;
+    if (const BaseBands* const bands = solved.base.bands()) {
+      const std::vector<ReliefPiece> pieces =
+          tiled_relief(frame, *bands, relief.pieces, plate, options, tolerance_mm, true, context);
+      add_piece_files(
+          call, placed(pieces), [&] { return placement_plan(pieces, *bands); }, result);
+    } else if (parts != nullptr) {
+      const std::vector<PartPiece> pieces = parted_relief(*parts, relief.pieces, options, tolerance_mm, true, context);
+      add_piece_files(
+          call, placed(pieces), [&] { return parts_plan(pieces); }, result);
+    }
   }
   report["seconds_read"] = loaded->seconds_read + loaded->seconds_repair;
   report["seconds_setup"] = solved.reused ? 0.0 : solver->seconds_setup();

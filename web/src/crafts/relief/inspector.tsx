@@ -247,7 +247,7 @@ function ExportButton({ session, result, onSendToMill }: ExportProps) {
                 hint: kept ? formatBytes(kept.bytes) : undefined,
                 disabledReason:
                   ofPieces && !session.pieces.possible.value
-                    ? 'Only a base of stairs or strips has pieces'
+                    ? 'Only stairs, strips and a base file of several parts have pieces'
                     : busy,
                 onSelect: () => void save(output),
               };

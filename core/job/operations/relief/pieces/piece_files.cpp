@@ -7,20 +7,20 @@
 #include "formats/container/zip.h"
 #include "formats/glb/glb_nodes.h"
 #include "formats/mesh_io.h"
-#include "geometry/mesh/adjacency.h"
+#include "geometry/mesh/file_grid.h"
+#include "geometry/mesh/measures.h"
 #include "job/contract/model_input.h"
 #include "job/operations/relief/forest/forest_files.h"
-#include "job/operations/relief/pieces/placement_plan.h"
 
 namespace formwright {
 namespace {
 
-Bytes stl_files(const std::vector<ReliefPiece>& pieces, Context& context) {
+Bytes stl_files(const std::vector<PlacedPiece>& pieces, Context& context) {
   ZipWriter zip;
   for (std::size_t k = 0; k < pieces.size(); ++k) {
     const std::string name = "piece_" + numbered(k, pieces.size());
     Model model;
-    model.mesh = pieces[k].solid.mesh;
+    model.mesh = pieces[k].lying;
     WriteOptions write;
     write.name = name;
     zip.add_stored(name + ".stl", write_model(model, MeshFormat::stl, write, context));
@@ -28,10 +28,10 @@ Bytes stl_files(const std::vector<ReliefPiece>& pieces, Context& context) {
   return zip.finish();
 }
 
-std::vector<NamedMesh> standing(const std::vector<ReliefPiece>& pieces) {
+std::vector<NamedMesh> standing(const std::vector<PlacedPiece>& pieces) {
   std::vector<NamedMesh> meshes;
   for (std::size_t k = 0; k < pieces.size(); ++k)
-    meshes.push_back({"Piece " + std::to_string(k + 1), in_place(pieces[k].solid, pieces[k].tile)});
+    meshes.push_back({"Piece " + std::to_string(k + 1), pieces[k].standing});
   return meshes;
 }
 
@@ -58,21 +58,21 @@ Model grouped(const std::vector<NamedMesh>& meshes) {
   return model;
 }
 
-void report_pieces(Json& report, const std::vector<ReliefPiece>& pieces) {
+void report_pieces(Json& report, const std::vector<PlacedPiece>& pieces) {
   Json list = Json::array();
   bool watertight = true;
   double volume_mm3 = 0;
   for (std::size_t k = 0; k < pieces.size(); ++k) {
-    const auto& [tile, solid] = pieces[k];
-    const Vec3 size = solid.mesh.V.colwise().maxCoeff().transpose();
+    const PlacedPiece& piece = pieces[k];
+    const Vec3 size = bounding_box(piece.lying).size();
     list.push_back({{"number", k + 1},
                     {"size_mm", {size.x(), size.y(), size.z()}},
-                    {"depth_mm", std::max(0.0, tile.depth_mm())},
-                    {"turn_deg", tile.turn_deg()},
-                    {"volume_ml", solid.volume_mm3 / 1000},
-                    {"numbered", solid.numbered}});
-    watertight = watertight && solid.watertight;
-    volume_mm3 += solid.volume_mm3;
+                    {"depth_mm", piece.depth_mm},
+                    {"turn_deg", piece.turn_deg},
+                    {"volume_ml", piece.volume_mm3 / 1000},
+                    {"numbered", piece.numbered}});
+    watertight = watertight && piece.watertight;
+    volume_mm3 += piece.volume_mm3;
   }
   report["pieces"] = list;
   report["pieces_watertight"] = watertight;
@@ -83,8 +83,9 @@ void report_pieces(Json& report, const std::vector<ReliefPiece>& pieces) {
 
 std::vector<OutputInfo> piece_outputs() {
   return {{"pieces.zip", "application/zip", "Pieces, STL",
-           "On stairs and strips: every step or strip as a watertight solid of its own, lying on its back, with its "
-           "number and an arrow that points up sunk into the back: piece_01.stl and so on.",
+           "On stairs, strips and a base of several parts: every step, strip or part as a watertight solid of its own, "
+           "lying on its back, with its number and an arrow that points up sunk into a flat back: piece_01.stl and so "
+           "on.",
            false},
           {"pieces.3mf", "model/3mf", "Pieces, 3MF",
            "The same pieces where they belong, as objects with names of their own.", false},
@@ -97,13 +98,14 @@ std::vector<OutputInfo> piece_outputs() {
 }
 
 std::vector<ReportField> piece_report_fields() {
-  return {{"pieces", "Pieces", "",
-           "For each piece, only where files of them are made: its number, the size of its solid, how far its middle "
-           "lies behind the foremost place of the base, its turn against the plate, its volume and whether there was "
-           "room for its number."},
-          {"pieces_watertight", "Pieces watertight", "",
-           "Whether every piece has no holes, as slicers need; checked on the result."},
-          {"pieces_volume_ml", "Volume of the pieces", "ml", "Volume of all pieces together."}};
+  return {
+      {"pieces", "Pieces", "",
+       "For each piece, only where files of them are made: its number, the size of its solid, how far its middle "
+       "(of a part of a file: its foremost place) lies behind the foremost place of the base, its turn against the plate, its volume and whether there was "
+       "room for its number."},
+      {"pieces_watertight", "Pieces watertight", "",
+       "Whether every piece has no holes, as slicers need; checked on the result."},
+      {"pieces_volume_ml", "Volume of the pieces", "ml", "Volume of all pieces together."}};
 }
 
 bool wants_pieces(const OperationCall& call) {
@@ -112,8 +114,27 @@ bool wants_pieces(const OperationCall& call) {
   return false;
 }
 
-void add_piece_files(const OperationCall& call, const std::vector<ReliefPiece>& pieces, const BaseBands& bands,
-                     OperationResult& result) {
+std::vector<PlacedPiece> placed(const std::vector<ReliefPiece>& pieces) {
+  std::vector<PlacedPiece> result;
+  for (const auto& [tile, solid] : pieces)
+    result.push_back({solid.mesh, in_place(solid, tile), std::max(0.0, tile.depth_mm()), tile.turn_deg(),
+                      solid.volume_mm3, solid.numbered, solid.watertight});
+  return result;
+}
+
+std::vector<PlacedPiece> placed(const std::vector<PartPiece>& pieces) {
+  std::vector<PlacedPiece> result;
+  for (const PartPiece& piece : pieces) {
+    TriangleMesh lying = piece.solid.mesh;
+    lying.V.rowwise() -= bounding_box(lying).lower.transpose();
+    result.push_back({on_file_grid(lying), piece.solid.mesh, piece.depth_mm, 0, piece.solid.volume_mm3,
+                      piece.solid.numbered, piece.solid.watertight});
+  }
+  return result;
+}
+
+void add_piece_files(const OperationCall& call, const std::vector<PlacedPiece>& pieces,
+                     const std::function<CutSheet()>& plan, OperationResult& result) {
   Context& context = call.context;
   report_pieces(result.report, pieces);
   const auto add = [&](const char* name, const auto& make) {
@@ -133,13 +154,13 @@ void add_piece_files(const OperationCall& call, const std::vector<ReliefPiece>& 
   });
   add("pieces.glb", [&] { return write_glb_nodes(meshes, context); });
   if (!call.wants("placement.svg") && !call.wants("placement.pdf")) return;
-  const CutSheet plan = placement_plan(pieces, bands);
-  add("placement.svg", [&] { return write_svg(plan); });
+  const CutSheet drawn = plan();
+  add("placement.svg", [&] { return write_svg(drawn); });
   add("placement.pdf", [&] {
     PageContent content;
-    content.drawing = &plan;
-    content.width_mm = plan.width_mm;
-    content.height_mm = plan.height_mm;
+    content.drawing = &drawn;
+    content.width_mm = drawn.width_mm;
+    content.height_mm = drawn.height_mm;
     return make_page_tiles(content, PageTilesOptions{}, context).pdf;
   });
 }

@@ -7,42 +7,15 @@
 #include <string>
 
 #include "base/format.h"
-#include "fabrication/sheet/word_paths.h"
+#include "job/operations/relief/pieces/placement_view.h"
 
 namespace formwright {
 namespace {
 
-constexpr double gap_mm = 12, title_height_mm = 4, word_height_mm = 3, max_number_height_mm = 8,
-                 number_share = 0.3;                // of a piece's smaller side
-constexpr double cross_arm_mm = 2, column_mm = 22;  // of the table
+constexpr double cross_arm_mm = 2;
 
-/// Paths with the room that they take.
-struct View {
-  std::vector<CutPath> paths;
-  Vec2 low = Vec2::Constant(INFINITY), high = Vec2::Constant(-INFINITY);
-
-  void add(CutPath path) {
-    for (const Vec2& p : path.points_mm) {
-      low = low.cwiseMin(p);
-      high = high.cwiseMax(p);
-    }
-    paths.push_back(std::move(path));
-  }
-  void words(const std::string& text, const Vec2& centre, double height_mm) {
-    for (CutPath& path : word_paths(text, centre, Vec2(1, 0), height_mm, CutLayer::engrave)) add(std::move(path));
-  }
-  /// Above what is there so far, from its left edge on.
-  void title(const std::string& text) {
-    words(text, Vec2(low.x() + 0.5 * words_width_mm(text, title_height_mm), high.y() + 1.5 * title_height_mm),
-          title_height_mm);
-  }
-  Vec2 size() const { return high - low; }
-};
-
-double number_height(const Vec2& size) { return std::min(max_number_height_mm, number_share * size.minCoeff()); }
-
-View front_view(const std::vector<ReliefPiece>& pieces) {
-  View view;
+PlacementView front_view(const std::vector<ReliefPiece>& pieces) {
+  PlacementView view;
   for (std::size_t k = 0; k < pieces.size(); ++k) {
     const ReliefTile& tile = pieces[k].tile;
     const std::string number = std::to_string(k + 1);
@@ -51,7 +24,7 @@ View front_view(const std::vector<ReliefPiece>& pieces) {
     view.add(std::move(outline));
     Vec2 middle(0, 0);
     for (const Vec2& p : tile.outline) middle += p / static_cast<double>(tile.outline.size());
-    view.words(number, tile.on_plane(middle).head<2>(), number_height(tile.upper() - tile.lower()));
+    view.words(number, tile.on_plane(middle).head<2>(), plan_number_height_mm(tile.upper() - tile.lower()));
   }
   view.title("FRONT");
   return view;
@@ -67,8 +40,8 @@ struct Section {
   }
 };
 
-View section_view(const std::vector<ReliefPiece>& pieces, const BaseBands& bands, const Section& section) {
-  View view;
+PlacementView section_view(const std::vector<ReliefPiece>& pieces, const BaseBands& bands, const Section& section) {
+  PlacementView view;
   for (std::size_t k = 0; k < pieces.size(); ++k) {
     const auto& [tile, solid] = pieces[k];
     const auto place = [&](const Vec2& corner, double height) { return section(tile.raised(corner, height)); };
@@ -80,8 +53,8 @@ View section_view(const std::vector<ReliefPiece>& pieces, const BaseBands& bands
               {place(first, 0), place(last, 0), place(last, -solid.back_mm), place(first, -solid.back_mm)},
               true,
               "plate-" + number});
-    const Vec2 behind = place(0.5 * (first + last), -solid.back_mm - word_height_mm);
-    view.words(number, section.from_above ? behind : Vec2(behind + Vec2(word_height_mm, 0)), word_height_mm);
+    const Vec2 behind = place(0.5 * (first + last), -solid.back_mm - plan_word_height_mm);
+    view.words(number, section.from_above ? behind : Vec2(behind + Vec2(plan_word_height_mm, 0)), plan_word_height_mm);
     const bool is_fold = tile.band + 1 < bands.count() && bands.slope(tile.band) != bands.slope(tile.band + 1);
     if (!is_fold) continue;
     const Vec2 fold = place(last, 0);
@@ -96,60 +69,44 @@ double signed_turn_deg(const BaseBands& bands, int band) {
   return std::atan(bands.slope(band)) * 180 / std::numbers::pi;
 }
 
-View table(const std::vector<ReliefPiece>& pieces, const BaseBands& bands) {
-  View view;
-  const double line = 2 * word_height_mm;
-  const auto add_row = [&](std::size_t row, const std::vector<std::string>& columns) {
-    for (std::size_t c = 0; c < columns.size(); ++c)
-      view.words(columns[c], Vec2(column_mm * (static_cast<double>(c) + 0.5), -line * static_cast<double>(row)),
-                 word_height_mm);
-  };
-  add_row(0, {"PIECE", "WIDTH", "HEIGHT", "THICK", "BEHIND", "TURN"});
+PlacementView table(const std::vector<ReliefPiece>& pieces, const BaseBands& bands) {
+  std::vector<std::vector<std::string>> rows;
   for (std::size_t k = 0; k < pieces.size(); ++k) {
     const auto& [tile, solid] = pieces[k];
     const Vec3 size = solid.mesh.V.colwise().maxCoeff().transpose();
-    add_row(k + 1,
-            {std::to_string(k + 1), with_decimals(size.x(), 1), with_decimals(size.y(), 1), with_decimals(size.z(), 1),
-             with_decimals(std::max(0.0, tile.depth_mm()), 1), with_decimals(signed_turn_deg(bands, tile.band), 1)});
+    rows.push_back({std::to_string(k + 1), with_decimals(size.x(), 1), with_decimals(size.y(), 1),
+                    with_decimals(size.z(), 1), with_decimals(std::max(0.0, tile.depth_mm()), 1),
+                    with_decimals(signed_turn_deg(bands, tile.band), 1)});
   }
-  const std::string units = "MM AND DEGREES";
-  view.words(units, Vec2(0.5 * words_width_mm(units, word_height_mm), -line * static_cast<double>(pieces.size() + 1)),
-             word_height_mm);
-  return view;
-}
-
-void place(CutSheet& sheet, const View& view, const Vec2& lower_left) {
-  for (CutPath path : view.paths) {
-    for (Vec2& p : path.points_mm) p += lower_left - view.low;
-    sheet.paths.push_back(std::move(path));
-  }
+  return plan_table({"PIECE", "WIDTH", "HEIGHT", "THICK", "BEHIND", "TURN"}, rows, "MM AND DEGREES");
 }
 
 }  // namespace
 
 CutSheet placement_plan(const std::vector<ReliefPiece>& pieces, const BaseBands& bands) {
   const Section section{bands.across(), std::abs(bands.across().x()) >= std::abs(bands.across().y())};
-  const View front = front_view(pieces), cut = section_view(pieces, bands, section), list = table(pieces, bands);
+  const PlacementView front = front_view(pieces), cut = section_view(pieces, bands, section),
+                      list = table(pieces, bands);
   CutSheet sheet;
   sheet.title = "Placement plan";
   const Vec2 views = section.from_above
                          ? Vec2(std::max(front.high.x(), cut.high.x()) - std::min(front.low.x(), cut.low.x()),
-                                front.size().y() + gap_mm + cut.size().y())
-                         : Vec2(front.size().x() + gap_mm + cut.size().x(),
+                                front.size().y() + plan_gap_mm + cut.size().y())
+                         : Vec2(front.size().x() + plan_gap_mm + cut.size().x(),
                                 std::max(front.high.y(), cut.high.y()) - std::min(front.low.y(), cut.low.y()));
-  sheet.width_mm = std::max(views.x(), list.size().x()) + 2 * gap_mm;
-  sheet.height_mm = views.y() + list.size().y() + 3 * gap_mm;
-  place(sheet, list, Vec2(gap_mm, gap_mm));
-  const Vec2 corner(gap_mm, 2 * gap_mm + list.size().y());
+  sheet.width_mm = std::max(views.x(), list.size().x()) + 2 * plan_gap_mm;
+  sheet.height_mm = views.y() + list.size().y() + 3 * plan_gap_mm;
+  add_view(sheet, list, Vec2(plan_gap_mm, plan_gap_mm));
+  const Vec2 corner(plan_gap_mm, 2 * plan_gap_mm + list.size().y());
   // The same place across the base stands at the same place of both views.
   if (section.from_above) {
     const double left = std::min(front.low.x(), cut.low.x());
-    place(sheet, cut, corner + Vec2(cut.low.x() - left, 0));
-    place(sheet, front, corner + Vec2(front.low.x() - left, cut.size().y() + gap_mm));
+    add_view(sheet, cut, corner + Vec2(cut.low.x() - left, 0));
+    add_view(sheet, front, corner + Vec2(front.low.x() - left, cut.size().y() + plan_gap_mm));
   } else {
     const double bottom = std::min(front.low.y(), cut.low.y());
-    place(sheet, front, corner + Vec2(0, front.low.y() - bottom));
-    place(sheet, cut, corner + Vec2(front.size().x() + gap_mm, cut.low.y() - bottom));
+    add_view(sheet, front, corner + Vec2(0, front.low.y() - bottom));
+    add_view(sheet, cut, corner + Vec2(front.size().x() + plan_gap_mm, cut.low.y() - bottom));
   }
   return sheet;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Keeps the pieces of a relief on stairs or strips in step with the relief that is shown, while they are looked at.
+// Keeps the pieces of a relief on stairs, strips or a base of several parts in step with the relief that is shown, while they are looked at.
 import type { ReadonlySignal } from '@preact/signals';
 import { computed, effect, signal, untracked } from '@preact/signals';
 import type { Backend } from '../../../jobs/backend';
@@ -54,13 +54,13 @@ export class ReliefPieces {
   readonly problem = signal<string | null>(null);
   /** How far they are pulled apart, 0 to 1. */
   readonly apart = signal(0);
-  /** The base that is chosen has steps or strips. */
+  /** The base that is chosen has steps, strips or several parts. */
   readonly possible = computed(() => {
     const { parameters, base } = this.#room.document.value;
     const operation = this.#room.operation.value;
-    return (
-      base === null && operation !== null && basesInPieces.includes(inForce(operation, parameters, 'base'))
-    );
+    // Of a file only the relief that is made on it says how many parts it has.
+    if (base !== null) return Number(this.#room.shown.value?.report['base_parts'] ?? 1) > 1;
+    return operation !== null && basesInPieces.includes(inForce(operation, parameters, 'base'));
   });
   readonly #room: PiecesRoom;
   readonly #latest = new LatestOnly<PiecesRequest>(

@@ -102,6 +102,15 @@ Region without(const Region& a, const Region& b) {
   return combined(ClipperLib::ctDifference, a.rings, b.rings, ClipperLib::pftNonZero);
 }
 
+Region cleaned(const Region& region, double distance, double min_area) {
+  ClipperLib::Paths paths = to_clipper(region.rings);
+  ClipperLib::CleanPolygons(paths, distance * units);
+  Region result = from_clipper(paths);
+  std::erase_if(result.rings,
+                [&](const std::vector<Vec2>& ring) { return std::abs(Region{{ring}}.area()) < min_area; });
+  return result;
+}
+
 Region grown(const Region& region, double distance) {
   ClipperLib::ClipperOffset offset(max_mitre);
   offset.AddPaths(to_clipper(region.rings), ClipperLib::jtMiter, ClipperLib::etClosedPolygon);

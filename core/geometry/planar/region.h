@@ -28,6 +28,9 @@ Region surrounded_by(const std::vector<std::vector<Vec2>>& lines);
 Region united(const Region& a, const Region& b);
 Region common(const Region& a, const Region& b);
 Region without(const Region& a, const Region& b);
+/// Without points nearer than a distance to the line through their neighbours, and without rings around less area than
+/// `min_area`.
+Region cleaned(const Region& region, double distance, double min_area);
 /// Grown by a distance, with mitred corners; shrunk by a negative one.
 Region grown(const Region& region, double distance);
 

@@ -14,7 +14,8 @@
 namespace formwright {
 namespace {
 
-constexpr double min_crossing = 1e-6;  // in depth: two faces that cross by less touch
+constexpr double min_crossing = 1e-6;   // in depth: two faces that cross by less touch
+constexpr double min_ring_area = 1e-8;  // of a ring: rounding leaves some, here others than on another computer
 constexpr double same_depth = 1e-12;
 constexpr double sliver = 2e-8;  // wider than what rounding leaves between areas that meet
 
@@ -220,6 +221,7 @@ std::vector<Region> seen_regions(const std::vector<TriangleMesh>& surfaces, cons
       if (!hidden.empty()) seen[k] = without(seen[k], hidden);
     }
   }
+  for (Region& region : seen) region = cleaned(region, sliver, min_ring_area);
   return seen;
 }
 

@@ -22,7 +22,8 @@ constexpr double min_height_mm = 0.02;  // less is no relief
 constexpr double clear_mm = 0.01;       // that added or cut bodies pass the part's surface by, where they only reach it
 constexpr double root_mm = 0.5;         // of what is added, within the part
 constexpr double max_root_share = 0.5, max_clear_share = 0.25;  // of what the ray goes through
-constexpr double flat = 1e-9;                                   // of a back, relative to the part's size
+constexpr double same_line_mm = 1e-5;
+constexpr double flat = 1e-9;  // of a back, relative to the part's size
 
 /// A body between two depths over some of the triangles.
 TriangleMesh body_between(const PlaneTriangles& net, const std::vector<char>& chosen, const std::vector<double>& front,
@@ -145,7 +146,8 @@ std::vector<TriangleMesh> back_grooves(const TriangleMesh& solid, int number) {
         corners.insert(corners.begin(), solid.V.row(solid.F(f, k)).head<2>().transpose());  // seen from the front
     if (corners.size() == 3) triangles.push_back(std::move(corners));
   }
-  const Region back = surrounded_by(triangles);
+  // Points along straight sides would pull its middle.
+  const Region back = cleaned(surrounded_by(triangles), same_line_mm, 0);
   const auto largest = std::ranges::max_element(back.rings, {}, [](const auto& ring) { return Region{{ring}}.area(); });
   if (largest == back.rings.end()) return {};
   std::vector<TriangleMesh> grooves = number_grooves(*largest, number, box.size().z());

@@ -89,7 +89,7 @@ class Borders {
 /// A corner of a part of a triangle: a vertex of the mesh (b < 0), the place where a border crosses an edge, or an end
 /// of a border within the triangle (a: the face).
 struct PartCorner {
-  enum Kind { vertex, on_edge, within };
+  enum Kind { vertex, on_edge, inside };
   std::array<int, 4> key{vertex, -1, -1, -1};
   int origin = -1;
   Vec3 straight = Vec3::Zero();  // of the joint surface
@@ -126,16 +126,20 @@ class PartCutter {
       add_part({whole[0], whole[1], whole[2]});
       return;
     }
-    const bool turned = cross(side(whole, 0), side(whole, 1)) < 0;
+    const double doubled = doubled_area(whole);
     std::vector<Vec2> points;
     for (const PartCorner& place : places) points.emplace_back(place.straight.head<2>());
     const PlaneTriangles parts = constrained_delaunay(points, edges);
+    // Borders of neighbouring parts may run side by side, a rounding error apart, and cross.
+    for (std::size_t k = places.size(); k < parts.points.size(); ++k) {
+      places.push_back(within(whole, parts.points[k]));
+      places.back().key = {PartCorner::inside, face, static_cast<int>(k), -1};
+    }
     for (const Eigen::Vector3i& t : parts.triangles) {
-      if (t.maxCoeff() >= static_cast<int>(places.size())) continue;  // borders that cross by a rounding error
       std::array<PartCorner, 3> part{places[static_cast<std::size_t>(t[0])], places[static_cast<std::size_t>(t[1])],
                                      places[static_cast<std::size_t>(t[2])]};
       if ((part[0].sides & part[1].sides & part[2].sides) != 0) continue;  // between points of one side
-      if (turned) std::swap(part[1], part[2]);
+      if (doubled < 0) std::swap(part[1], part[2]);
       add_part(part);
     }
   }
@@ -189,6 +193,24 @@ class PartCutter {
     return c;
   }
 
+  static double doubled_area(const std::array<PartCorner, 3>& whole) {
+    return cross(side(whole, 0), Vec2(-side(whole, 2)));
+  }
+
+  /// The place of the surface that is seen at a point within the triangle.
+  static PartCorner within(const std::array<PartCorner, 3>& whole, const Vec2& p) {
+    const double doubled = doubled_area(whole);
+    const Vec2 off = p - whole[0].straight.head<2>();
+    const double share_b = cross(off, Vec2(-side(whole, 2))) / doubled, share_c = cross(side(whole, 0), off) / doubled;
+    PartCorner place = between(whole[0], whole[1], share_b);
+    place.straight += share_c * (whole[2].straight - whole[0].straight);
+    place.room += share_c * (whole[2].room - whole[0].room);
+    place.bounded = place.bounded && whole[2].bounded;
+    if (share_c > 0.5) place.origin = whole[2].origin;
+    place.straight.head<2>() = p;
+    return place;
+  }
+
   /// Adds what a triangle has of a border: the places where it crosses sides, ends within, and edges between them.
   void add_border(int face, const std::array<PartCorner, 3>& whole, int s, std::vector<PartCorner>& places,
                   std::vector<std::array<int, 2>>& edges) const {
@@ -219,26 +241,19 @@ class PartCutter {
       place.sides = 1 << k;
       add(t, std::move(place));
     }
-    const double doubled = cross(side(whole, 0), Vec2(-side(whole, 2)));
+    const double doubled = doubled_area(whole);
     for (int end = 0; end < 2; ++end) {
       if (left_of_all[end] != 0 && left_of_all[end] != 3) continue;
       if ((left_of_all[end] == 3) != (doubled > 0)) continue;
-      const Vec2 p = end == 0 ? border.from : border.to, off = p - whole[0].straight.head<2>();
-      const double share_b = cross(off, Vec2(-side(whole, 2))) / doubled,
-                   share_c = cross(side(whole, 0), off) / doubled;
-      PartCorner place = between(whole[0], whole[1], share_b);
-      place.straight += share_c * (whole[2].straight - whole[0].straight);
-      place.room += share_c * (whole[2].room - whole[0].room);
-      place.bounded = place.bounded && whole[2].bounded;
-      if (share_c > 0.5) place.origin = whole[2].origin;
-      place.straight.head<2>() = p;
+      PartCorner place = within(whole, end == 0 ? border.from : border.to);
+      const Vec2 p = place.straight.head<2>();
       // Borders that meet there end at one place.
       const auto known = std::ranges::find_if(places, [&](const PartCorner& other) {
-        return other.key[0] == PartCorner::within && other.straight.head<2>() == p;
+        return other.key[0] == PartCorner::inside && other.straight.head<2>() == p;
       });
       if (known != places.end()) met.emplace_back(end, static_cast<int>(known - places.begin()));
       else {
-        place.key = {PartCorner::within, face, static_cast<int>(places.size()), -1};
+        place.key = {PartCorner::inside, face, static_cast<int>(places.size()), -1};
         add(end, std::move(place));
       }
     }

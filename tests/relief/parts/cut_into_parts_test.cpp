@@ -141,5 +141,47 @@ TEST_CASE("CutIntoParts.EveryPartOfTheSurfaceHangsTogetherAcrossItsTriangles") {
   CHECK(free > 0);
 }
 
+TEST_CASE("CutIntoParts.LeavesNoHolesAlongBorders") {
+  // Borders run through vertices and along edges of the ball and of the ring; and side by side where one block hides
+  // others: neighbours round the same border differently.
+  const TriangleMesh blocks = test::joined(
+      test::joined(test::box_mm({-80, 0, -20}, {0, 100, 0}), test::box_mm({0, 0, -35}, {80, 100, -15})),
+      test::joined(test::box_mm({-80, -100, -40}, {80, 0, -20}), test::box_mm({-30, -60, -10}, {30, -20, 5})));
+  for (const Projection projection : {Projection::perspective, Projection::orthographic})
+    for (const TriangleMesh& model :
+         {test::icosphere(4), test::torus(64, 32), test::rotated(test::torus(200, 80), Vec3(1, 2, 3), 0.3)}) {
+      const ReliefOptions options = test::options_on_parts(projection);
+      const test::OnParts on = test::relief_on(blocks, options, model);
+      const TriangleMesh whole{straightened(on.frame.P, on.frame.kappa), on.F};
+      const RayCaster of_whole(whole);
+      const Positions V = straightened(on.relief.pieces.V, on.frame.kappa);
+      const double front = V.col(2).minCoeff() - 2;
+      const auto is_met = [&](const RayCaster& caster, const Vec2& p) {
+        return caster.first_hit(Vec3(p.x(), p.y(), front), Vec3::UnitZ(), 0, 10).has_value();
+      };
+      int met = 0, holes = 0;
+      for (int part = 0; part < on.parts->count(); ++part) {
+        std::vector<Eigen::Index> faces;
+        for (Eigen::Index f = 0; f < on.relief.pieces.F.rows(); ++f)
+          if (on.relief.pieces.band[static_cast<std::size_t>(f)] == part) faces.push_back(f);
+        const RayCaster of_part(TriangleMesh{V, on.relief.pieces.F(faces, Eigen::all)});
+        for (const double inset : {1e-4, 1e-5})
+          for (const std::vector<Vec2>& ring : grown(on.parts->seen(part), -inset).rings)
+            for (std::size_t k = 0; k < ring.size(); ++k)
+              for (int step = 0; step < 1000; ++step) {
+                const Vec2 p = ring[k] + (ring[(k + 1) % ring.size()] - ring[k]) * (step / 1000.0);
+                bool certain = true;
+                for (const Vec2& off : {Vec2(2e-4, 0), Vec2(-2e-4, 0), Vec2(0, 2e-4), Vec2(0, -2e-4)})
+                  certain = certain && is_met(of_whole, p + off);
+                if (!certain) continue;
+                ++met;
+                holes += !is_met(of_part, p);
+              }
+      }
+      CHECK(met > 500);
+      CHECK(holes == 0);
+    }
+}
+
 }  // namespace
 }  // namespace formwright

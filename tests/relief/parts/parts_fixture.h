@@ -33,13 +33,17 @@ struct OnParts {
   Relief relief;
 };
 
-inline OnParts relief_on(const TriangleMesh& base_mm, const ReliefOptions& options, int levels = 4) {
+inline OnParts relief_on(const TriangleMesh& base_mm, const ReliefOptions& options, const TriangleMesh& model) {
   Context context;
-  ReliefSolver solver(icosphere(levels), options, context);
+  ReliefSolver solver(model, options, context);
   const TriangleMesh base = base_from_file(base_mm, options);
   auto parts = std::make_shared<const BaseParts>(base, solver.frame().kappa, context);
   Relief relief = solver.solve(options, BaseSurface(base, std::nullopt, parts), context);
   return {options, solver.frame(), solver.F(), parts, std::move(relief)};
+}
+
+inline OnParts relief_on(const TriangleMesh& base_mm, const ReliefOptions& options, int levels = 4) {
+  return relief_on(base_mm, options, icosphere(levels));
 }
 
 }  // namespace formwright::test

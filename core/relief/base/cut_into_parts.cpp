@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "geometry/planar/delaunay.h"
@@ -25,13 +26,13 @@ struct Segment {
 class Borders {
  public:
   explicit Borders(const BaseParts& parts) {
-    std::map<std::array<double, 4>, bool> known;
+    std::set<std::array<double, 4>> known;
     for (int part = 0; part < parts.count(); ++part)
       for (const std::vector<Vec2>& ring : parts.seen(part).rings)
         for (std::size_t k = 0; k < ring.size(); ++k) {
           Vec2 a = ring[k], b = ring[(k + 1) % ring.size()];
           if (std::pair(b.x(), b.y()) < std::pair(a.x(), a.y())) std::swap(a, b);
-          if (!known.try_emplace({a.x(), a.y(), b.x(), b.y()}, true).second) continue;
+          if (!known.insert({a.x(), a.y(), b.x(), b.y()}).second) continue;
           segments_.push_back({a, b});
           low_ = low_.cwiseMin(a.cwiseMin(b));
           high_ = high_.cwiseMax(a.cwiseMax(b));

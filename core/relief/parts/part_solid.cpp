@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <set>
 #include <utility>
 
 #include "geometry/booleans/booleans.h"
@@ -31,7 +31,7 @@ TriangleMesh body_between(const PlaneTriangles& net, const std::vector<char>& ch
   std::vector<int> vertex(net.points.size(), -1);
   std::vector<Vec3> places;
   std::vector<Eigen::Vector3i> faces;
-  std::map<std::pair<int, int>, int> border;  // directed edges without a neighbour
+  std::set<std::pair<int, int>> border;  // directed edges without a neighbour
   const auto place_at = [&](std::size_t i, double z) -> Vec3 {
     const Vec3 p = size_mm * on_ray(net.points[i], z, kappa);
     return {p.x(), p.y(), -p.z()};
@@ -52,10 +52,9 @@ TriangleMesh body_between(const PlaneTriangles& net, const std::vector<char>& ch
     faces.emplace_back(a, b, c);
     faces.emplace_back(a + 1, c + 1, b + 1);
     for (const auto& [from, to] : {std::pair{a, b}, std::pair{b, c}, std::pair{c, a}})
-      if (border.erase({to, from}) == 0) border.emplace(std::pair{from, to}, 0);
+      if (border.erase({to, from}) == 0) border.emplace(from, to);
   }
-  for (const auto& [edge, unused] : border) {
-    const auto [from, to] = edge;
+  for (const auto& [from, to] : border) {
     faces.emplace_back(to, from, from + 1);
     faces.emplace_back(to, from + 1, to + 1);
   }
@@ -71,14 +70,14 @@ TriangleMesh body_between(const PlaneTriangles& net, const std::vector<char>& ch
 void join_fans(const PlaneTriangles& net, std::vector<char>& chosen) {
   for (bool changed = true; changed;) {
     changed = false;
-    std::map<std::pair<int, int>, int> border;
+    std::set<std::pair<int, int>> border;
     for (std::size_t f = 0; f < net.triangles.size(); ++f)
       for (Eigen::Index k = 0; chosen[f] && k < 3; ++k) {
         const int a = net.triangles[f][k], b = net.triangles[f][(k + 1) % 3];
-        if (border.erase({b, a}) == 0) border.emplace(std::pair{a, b}, 0);
+        if (border.erase({b, a}) == 0) border.emplace(a, b);
       }
     std::vector<int> leaving(net.points.size(), 0);
-    for (const auto& [edge, unused] : border) ++leaving[static_cast<std::size_t>(edge.first)];
+    for (const auto& [from, to] : border) ++leaving[static_cast<std::size_t>(from)];
     for (std::size_t f = 0; f < net.triangles.size(); ++f)
       for (Eigen::Index k = 0; !chosen[f] && k < 3; ++k)
         if (leaving[static_cast<std::size_t>(net.triangles[f][k])] > 1) chosen[f] = changed = true;

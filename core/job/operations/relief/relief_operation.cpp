@@ -79,7 +79,8 @@ std::vector<ReportField> relief_report_fields() {
       {"vertices_beyond_base", "Vertices beyond the base", "",
        "Number of vertices that have no base behind them and are free in depth."},
       {"base_parts", "Parts of the base", "",
-       "Number of parts of a base from a file, each of which carries what is seen before it; 1 where the base is one."},
+       "Number of parts of a base from a file, each of which carries what is seen before it; 1 where it is taken as one "
+       "surface. Only with such a base."},
       {"painted_vertices", "Painted vertices", "",
        "Number of vertices of each kind that is painted: matters_more, matters_less, free, on_base, own_thickness. Only with a painting."},
       {"stands_out_max_mm", "Largest height above the base", "mm",
@@ -310,7 +311,7 @@ OperationResult run_relief(const OperationCall& call, const ReliefOptions& optio
   const double range_mm = options.width_mm * (base_depth.second - base_depth.first) +
                           solved.base.max_along_z() * (space.above_mm + space.below_mm);
   const BaseParts* const parts = solved.base.parts();
-  report["base_parts"] = parts != nullptr ? parts->count() : 1;
+  if (solved.base_from_file) report["base_parts"] = parts != nullptr ? parts->count() : 1;
   if (parts != nullptr) add_notes_on_parts(*parts, relief, notes);
   const Painting& painting = solved.painted.painting;
   if (!painting.empty()) report["painted_vertices"] = painted_vertices(painting);

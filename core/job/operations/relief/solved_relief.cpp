@@ -36,6 +36,7 @@ SolvedRelief solve_relief(const OperationCall& call, const ReliefOptions& option
     call.session.keep(key, solved.solver, solved.solver->memory_mb());
   }
   const Stopwatch watch;
+  solved.base_from_file = base_model != nullptr;
   solved.base = relief_base(base_model.get(), options, solved.solver->frame(), context);
   {
     const auto span = context.span(set_up_by, 1, "Fitting into the thickness");

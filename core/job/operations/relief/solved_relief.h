@@ -18,6 +18,7 @@ struct SolvedRelief {
   std::shared_ptr<ReliefSolver> solver;
   bool reused = false;  // the solver was found in the session
   BaseSurface base;
+  bool base_from_file = false;
   LoadedPainting painted;
   Relief relief;
   double seconds_solve = 0;

@@ -7,7 +7,8 @@
   passed_before.py hash PATH...              a hash of files and folders and of the packages of this machine
 
 A test is known by a hash of its command, its environment, every file that the command names with those that belong to it
-(a program's .wasm), the data in tests/, for scripts all scripts in tests/, and the packages of this machine. A test whose
+(a program's .wasm), the data of its module in tests/, for scripts all data and scripts in tests/, and the packages of this
+machine. A test whose
 command names nothing that was built looks at the repository itself and always runs. A record is a file in the build
 folder; without it all tests run."""
 import argparse
@@ -57,9 +58,11 @@ def hash_of_machine() -> str:
 
 
 @functools.cache
-def hash_of_tests(scripts: bool) -> str:
-    files = [file for file in files_below([ROOT / "tests"]) if file.suffix not in SOURCES]
-    return hash_of_files([file for file in files if scripts or file.suffix not in SCRIPTS])
+def hash_of_data(module: str) -> str:
+    """Of one module's data without scripts; of all data and scripts for an empty name."""
+    folder = ROOT / "tests" / module
+    files = [file for file in files_below([folder]) if file.suffix not in SOURCES] if folder.is_dir() else []
+    return hash_of_files([file for file in files if not module or file.suffix not in SCRIPTS])
 
 
 def hash_of_test(test: dict, build: pathlib.Path) -> str | None:
@@ -70,8 +73,11 @@ def hash_of_test(test: dict, build: pathlib.Path) -> str | None:
         return None
     own = {part for file in built for part in file.parent.glob(f"{file.stem}.*") if part.is_file()} | set(files)
     environment = [entry for entry in test.get("properties", []) if entry["name"] == "ENVIRONMENT"]
-    scripts = any(file.suffix in SCRIPTS for file in files)
-    return hash_of(test["command"], environment, hash_of_files(sorted(own)), hash_of_tests(scripts), hash_of_machine())
+    # build/tests/relief/parts/test_relief_parts is of the module relief.
+    within = built[0].resolve().relative_to(build.resolve()).parts
+    is_script = any(file.suffix in SCRIPTS for file in files)
+    module = within[1] if not is_script and within[0] == "tests" and len(within) > 2 else ""
+    return hash_of(test["command"], environment, hash_of_files(sorted(own)), hash_of_data(module), hash_of_machine())
 
 
 def read(record: pathlib.Path) -> dict:

@@ -300,7 +300,7 @@ Relief ReliefSolver::solve_within(const ReliefOptions& options, const DepthBound
   if (options.appearance == Appearance::balanced && cut != nullptr)
     throw Error(
         ErrorCode::invalid_input, "appearance",
-        "On a base in steps, strips or parts the relief is made with the appearance \"detail\" only: choose it, or another base.");
+        "On a base in steps, strips or parts the relief is made with the appearance \"detail\" only: choose it, take the parts as one surface, or choose another base.");
   // On a plate lent, not copied: at 300k vertices the rows are tens of megabytes.
   const bool lent = bounds.even;
   struct Lent {

@@ -7,14 +7,15 @@
   passed_before.py hash PATH...              a hash of files and folders and of the packages of this machine
 
 A test is known by a hash of its command, its environment, every file that the command names with those that belong to it
-(a program's .wasm), the data of its module in tests/, for scripts all data and scripts in tests/, and the packages of this
-machine. A test whose
+(a program's .wasm), the data of its module in tests/, for scripts all data and scripts in tests/, the packages of this
+machine, and what FORMWRIGHT_... variables say. A test whose
 command names nothing that was built looks at the repository itself and always runs. A record is a file in the build
 folder; without it all tests run."""
 import argparse
 import functools
 import hashlib
 import json
+import os
 import pathlib
 import re
 import subprocess
@@ -22,6 +23,7 @@ import xml.etree.ElementTree
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 MACHINE = (pathlib.Path("/var/lib/dpkg/status"), pathlib.Path(__file__).resolve())
+NOT_OF_TESTS = {"FORMWRIGHT_JOBS", "FORMWRIGHT_PASSED_BEFORE", "FORMWRIGHT_BACKEND", "FORMWRIGHT_CACHE"}
 SOURCES = {".cpp", ".h", ".txt", ".md"}  # compiled, or read by nothing
 SCRIPTS = {".py", ".mjs"}
 
@@ -53,8 +55,9 @@ def hash_of_files(files) -> str:
 
 
 @functools.cache
-def hash_of_machine() -> str:
-    return hash_of_files([file for file in MACHINE if file.is_file()])
+def hash_of_surroundings() -> str:
+    said = {name: value for name, value in os.environ.items() if name.startswith("FORMWRIGHT_") and name not in NOT_OF_TESTS}
+    return hash_of(sorted(said.items()), hash_of_files([file for file in MACHINE if file.is_file()]))
 
 
 @functools.cache
@@ -77,7 +80,7 @@ def hash_of_test(test: dict, build: pathlib.Path) -> str | None:
     within = built[0].resolve().relative_to(build.resolve()).parts
     is_script = any(file.suffix in SCRIPTS for file in files)
     module = within[1] if not is_script and within[0] == "tests" and len(within) > 2 else ""
-    return hash_of(test["command"], environment, hash_of_files(sorted(own)), hash_of_data(module), hash_of_machine())
+    return hash_of(test["command"], environment, hash_of_files(sorted(own)), hash_of_data(module), hash_of_surroundings())
 
 
 def read(record: pathlib.Path) -> dict:
@@ -127,7 +130,7 @@ def main() -> None:
     elif options.command == "keep":
         keep_tests(options.build, options.junit)
     else:
-        print(hash_of(hash_of_files(files_below(options.paths)), hash_of_machine()))
+        print(hash_of(hash_of_files(files_below(options.paths)), hash_of_surroundings()))
 
 
 if __name__ == "__main__":

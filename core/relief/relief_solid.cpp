@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "relief/height_map.h"
+#include "geometry/mesh/mesh_lists.h"
 #include "relief/right_triangle_network.h"
 
 namespace formwright {
@@ -69,12 +70,7 @@ TriangleMesh make_solid(const HeightMap& map, double plate_mm, double tolerance_
     faces.emplace_back(below + next, below + k, centre);
   }
 
-  TriangleMesh solid;
-  solid.V.resize(static_cast<Eigen::Index>(vertices.size()), 3);
-  for (std::size_t i = 0; i < vertices.size(); ++i) solid.V.row(static_cast<Eigen::Index>(i)) = vertices[i].transpose();
-  solid.F.resize(static_cast<Eigen::Index>(faces.size()), 3);
-  for (std::size_t i = 0; i < faces.size(); ++i) solid.F.row(static_cast<Eigen::Index>(i)) = faces[i].transpose();
-  return solid;
+  return mesh_of(vertices, faces);
 }
 
 }  // namespace formwright

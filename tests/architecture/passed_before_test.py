@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """setup/passed_before.py on a build folder with four small tests."""
+import os
 import pathlib
 import subprocess
 import sys
@@ -63,6 +64,14 @@ class PassedBefore(unittest.TestCase):
         self.assertEqual(self.must_run(), [1, 2, 3, 4])
         self.run_tests()
         self.program.write_text("#!/bin/sh\nexit $1\n")
+        self.assertEqual(self.must_run(), [1, 2, 3, 4])
+
+    def test_another_seed_is_another_test(self):
+        self.must_run()
+        self.run_tests()
+        self.assertEqual(self.must_run(), [2, 4])
+        os.environ["FORMWRIGHT_SEED"] = "7"
+        self.addCleanup(os.environ.pop, "FORMWRIGHT_SEED")
         self.assertEqual(self.must_run(), [1, 2, 3, 4])
 
     def test_a_broken_record_is_no_record(self):

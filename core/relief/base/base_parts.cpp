@@ -22,28 +22,6 @@ constexpr double min_carrying = 0.2;          // cosine between ray and normal: 
 constexpr double thinnest = 1e-9;             // of a solid, in depth
 constexpr double beside = 1e-7;               // of a ray that misses an outline by a rounding error
 
-/// Of each face the number of its connected part; parts in the order of their first faces.
-std::vector<int> connected_parts(const TriangleMesh& mesh, int& count) {
-  std::vector<int> parent(static_cast<std::size_t>(mesh.V.rows()));
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](int v) {
-    auto at = static_cast<std::size_t>(v);
-    while (parent[at] != static_cast<int>(at))
-      at = static_cast<std::size_t>(parent[at] = parent[static_cast<std::size_t>(parent[at])]);
-    return static_cast<int>(at);
-  };
-  for (Eigen::Index f = 0; f < mesh.F.rows(); ++f)
-    for (Eigen::Index k = 1; k < 3; ++k) parent[static_cast<std::size_t>(root(mesh.F(f, k)))] = root(mesh.F(f, 0));
-  std::vector<int> number(parent.size(), -1), part(static_cast<std::size_t>(mesh.F.rows()));
-  count = 0;
-  for (Eigen::Index f = 0; f < mesh.F.rows(); ++f) {
-    int& own = number[static_cast<std::size_t>(root(mesh.F(f, 0)))];
-    if (own < 0) own = count++;
-    part[static_cast<std::size_t>(f)] = own;
-  }
-  return part;
-}
-
 /// The faces with one number, without vertices that they do not use.
 TriangleMesh faces_of(const TriangleMesh& mesh, const std::vector<int>& part, int number) {
   std::vector<int> vertex_of(static_cast<std::size_t>(mesh.V.rows()), -1), used;
@@ -66,9 +44,10 @@ TriangleMesh faces_of(const TriangleMesh& mesh, const std::vector<int>& part, in
 }
 
 /// The parts, a closed one that lies within another and is turned the other way joined to it.
-std::vector<int> solid_parts(const TriangleMesh& base, int& count) {
-  std::vector<int> part = connected_parts(base, count);
-  if (count == 1) return part;
+Components solid_parts(const TriangleMesh& base) {
+  Components parts = face_components(Adjacency(base));
+  auto& [part, count] = parts;
+  if (count == 1 || count > max_parts) return parts;  // too many are refused, hollows or not
   std::vector<double> volume;
   std::vector<BoundingBox> box;
   for (int k = 0; k < count; ++k) {
@@ -89,7 +68,7 @@ std::vector<int> solid_parts(const TriangleMesh& base, int& count) {
     if (belongs_to[k] == static_cast<int>(k)) number[k] = kept++;
   for (int& own : part) own = number[static_cast<std::size_t>(belongs_to[static_cast<std::size_t>(own)])];
   count = kept;
-  return part;
+  return parts;
 }
 
 /// Of each face whether the ray through its middle meets it far enough from its edge.
@@ -119,19 +98,15 @@ std::vector<char> front_faces(const TriangleMesh& mesh, double kappa, bool close
 
 }  // namespace
 
-int count_base_parts(const TriangleMesh& base) {
-  int count = 0;
-  solid_parts(base, count);
-  return count;
-}
+int count_base_parts(const TriangleMesh& base) { return solid_parts(base).count; }
 
 BaseParts::BaseParts(const TriangleMesh& base, double kappa, Context& context) : kappa_(kappa) {
   if (1 + kappa * base.V.col(2).minCoeff() < min_before_viewpoint)
     throw Error(
         ErrorCode::invalid_input, "base_mesh",
         "The base reaches to the viewpoint: move it away from the viewer, or choose a larger viewing distance.");
-  int count = 0;
-  part_of_face_ = solid_parts(base, count);
+  const auto [part_of_face, count] = solid_parts(base);
+  part_of_face_ = part_of_face;
   if (count > max_parts)
     throw Error(ErrorCode::invalid_input, "base_mesh",
                 "The base has " + std::to_string(count) + " parts that do not hang together, and " +

@@ -11,6 +11,7 @@
 
 #include "geometry/planar/delaunay.h"
 #include "geometry/planar/plane.h"
+#include "relief/base/piece_list.h"
 #include "relief/view/straight_view.h"
 
 namespace formwright {
@@ -145,25 +146,7 @@ class PartCutter {
     }
   }
 
-  ReliefPieces pieces() {
-    ReliefPieces result;
-    result.V.resize(static_cast<Eigen::Index>(places_.size()), 3);
-    for (std::size_t i = 0; i < places_.size(); ++i)
-      result.V.row(static_cast<Eigen::Index>(i)) = places_[i].transpose();
-    result.F.resize(static_cast<Eigen::Index>(faces_.size()), 3);
-    for (std::size_t f = 0; f < faces_.size(); ++f) result.F.row(static_cast<Eigen::Index>(f)) = faces_[f].transpose();
-    result.band = std::move(part_);
-    result.origin = std::move(origin_);
-    if (bounds_.painted()) {
-      result.above.resize(result.V.rows());
-      result.below.resize(result.V.rows());
-      for (std::size_t i = 0; i < room_.size(); ++i) {
-        result.above[static_cast<Eigen::Index>(i)] = room_[i][0];
-        result.below[static_cast<Eigen::Index>(i)] = room_[i][1];
-      }
-    }
-    return result;
-  }
+  ReliefPieces pieces() { return list_.pieces(bounds_.painted()); }
 
  private:
   static Vec2 side(const std::array<PartCorner, 3>& whole, std::size_t k) {
@@ -271,18 +254,13 @@ class PartCutter {
     if (!hit || !hit->carries) return;
     Eigen::Vector3i face;
     for (std::size_t k = 0; k < 3; ++k) face[static_cast<Eigen::Index>(k)] = vertex(corners[k], hit->part);
-    faces_.push_back(face);
-    part_.push_back(hit->part);
+    list_.add_face(face, hit->part);
   }
 
   int vertex(const PartCorner& c, int part) {
     const std::array<int, 5> key{c.key[0], c.key[1], c.key[2], c.key[3], part};
-    const auto [found, is_new] = vertices_.try_emplace(key, static_cast<int>(places_.size()));
-    if (is_new) {
-      places_.push_back(brought_back(c, part));
-      origin_.push_back(c.origin);
-      room_.push_back(c.room);
-    }
+    const auto [found, is_new] = vertices_.try_emplace(key, list_.vertex_count());
+    if (is_new) list_.add_vertex(brought_back(c, part), c.origin, c.room);
     return found->second;
   }
 
@@ -310,10 +288,7 @@ class PartCutter {
   const BaseParts& parts_;
   Borders borders_;
   std::map<std::array<int, 5>, int> vertices_;
-  std::vector<Vec3> places_;
-  std::vector<Eigen::Vector3i> faces_;
-  std::vector<int> part_, origin_;
-  std::vector<Vec2> room_;
+  PieceList list_;
 };
 
 }  // namespace

@@ -5,6 +5,8 @@
 #include <array>
 #include <map>
 
+#include "relief/base/piece_list.h"
+
 namespace formwright {
 namespace {
 
@@ -41,25 +43,7 @@ class Cutter {
     }
   }
 
-  ReliefPieces pieces() {
-    ReliefPieces result;
-    result.V.resize(static_cast<Eigen::Index>(places_.size()), 3);
-    for (std::size_t i = 0; i < places_.size(); ++i)
-      result.V.row(static_cast<Eigen::Index>(i)) = places_[i].transpose();
-    result.F.resize(static_cast<Eigen::Index>(faces_.size()), 3);
-    for (std::size_t f = 0; f < faces_.size(); ++f) result.F.row(static_cast<Eigen::Index>(f)) = faces_[f].transpose();
-    result.band = std::move(band_);
-    result.origin = std::move(origin_);
-    if (bounds_.painted()) {
-      result.above.resize(result.V.rows());
-      result.below.resize(result.V.rows());
-      for (std::size_t i = 0; i < room_.size(); ++i) {
-        result.above[static_cast<Eigen::Index>(i)] = room_[i][0];
-        result.below[static_cast<Eigen::Index>(i)] = room_[i][1];
-      }
-    }
-    return result;
-  }
+  ReliefPieces pieces() { return list_.pieces(bounds_.painted()); }
 
  private:
   Corner corner(int vertex) const {
@@ -110,18 +94,13 @@ class Cutter {
     face[0] = vertex(a, band);  // one after the other: the arguments of one call have no order
     face[1] = vertex(b, band);
     face[2] = vertex(c, band);
-    faces_.push_back(face);
-    band_.push_back(band);
+    list_.add_face(face, band);
   }
 
   int vertex(const Corner& c, int band) {
     const std::array<int, 4> key{c.a, c.b, c.border, band};
-    const auto [found, is_new] = vertices_.try_emplace(key, static_cast<int>(places_.size()));
-    if (is_new) {
-      places_.push_back(brought_back(c, band));
-      origin_.push_back(c.origin);
-      room_.push_back(c.room);
-    }
+    const auto [found, is_new] = vertices_.try_emplace(key, list_.vertex_count());
+    if (is_new) list_.add_vertex(brought_back(c, band), c.origin, c.room);
     return found->second;
   }
 
@@ -154,10 +133,7 @@ class Cutter {
   std::vector<double> border_t_;
   std::map<std::array<int, 3>, int> ids_;
   std::map<std::array<int, 4>, int> vertices_;
-  std::vector<Vec3> places_;
-  std::vector<Eigen::Vector3i> faces_;
-  std::vector<int> band_, origin_;
-  std::vector<Vec2> room_;
+  PieceList list_;
 };
 
 }  // namespace

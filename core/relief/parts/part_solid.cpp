@@ -10,6 +10,7 @@
 #include "geometry/mesh/adjacency.h"
 #include "geometry/mesh/file_grid.h"
 #include "geometry/mesh/measures.h"
+#include "geometry/mesh/mesh_lists.h"
 #include "relief/tiles/relief_tile.h"
 #include "relief/tiles/tile_solid.h"
 #include "relief/view/straight_view.h"
@@ -58,12 +59,7 @@ TriangleMesh body_between(const PlaneTriangles& net, const std::vector<char>& ch
     faces.emplace_back(to, from, from + 1);
     faces.emplace_back(to, from + 1, to + 1);
   }
-  TriangleMesh mesh;
-  mesh.V.resize(static_cast<Eigen::Index>(places.size()), 3);
-  for (std::size_t i = 0; i < places.size(); ++i) mesh.V.row(static_cast<Eigen::Index>(i)) = places[i].transpose();
-  mesh.F.resize(static_cast<Eigen::Index>(faces.size()), 3);
-  for (std::size_t f = 0; f < faces.size(); ++f) mesh.F.row(static_cast<Eigen::Index>(f)) = faces[f].transpose();
-  return mesh;
+  return mesh_of(places, faces);
 }
 
 /// Adds triangles until those around every point hang together, so that a body over them is manifold.
@@ -127,12 +123,6 @@ Body changed_body(const PartFront& front, Change wanted, const PartSolidOptions&
   return body;
 }
 
-TriangleMesh in_scene(const TriangleMesh& mesh, double size_mm) {
-  TriangleMesh scene{to_scene(mesh.V, size_mm), mesh.F};
-  if (signed_volume(scene) < 0) scene.F.col(1).swap(scene.F.col(2));
-  return scene;
-}
-
 /// What is sunk into a flat back that looks straight away from the viewer. Empty where there is none with room.
 std::vector<TriangleMesh> back_grooves(const TriangleMesh& solid, int number) {
   const BoundingBox box = bounding_box(solid);
@@ -167,6 +157,12 @@ bool any(const std::vector<char>& chosen) { return std::ranges::find(chosen, 1) 
 
 }  // namespace
 
+TriangleMesh part_in_scene(const BaseParts& parts, int part, double size_mm) {
+  TriangleMesh scene{to_scene(parts.mesh(part).V, size_mm), parts.mesh(part).F};
+  if (signed_volume(scene) < 0) scene.F.col(1).swap(scene.F.col(2));
+  return scene;
+}
+
 PartSolid part_solid(const BaseParts& parts, int part, const TriangleMesh& relief, const PartSolidOptions& options,
                      Context& context) {
   PartSolid solid;
@@ -184,7 +180,7 @@ PartSolid part_solid(const BaseParts& parts, int part, const TriangleMesh& relie
   };
   std::vector<TriangleMesh> grooves;
   if (parts.is_closed(part)) {
-    const TriangleMesh own = in_scene(parts.mesh(part), options.size_mm);
+    const TriangleMesh own = part_in_scene(parts, part, options.size_mm);
     if (options.number > 0) grooves = back_grooves(own, options.number);
     ExactSolid exact = ExactSolid::from_mesh(own, "base_mesh", context);
     const Body carved = changed_body(front, Change::carved, options),

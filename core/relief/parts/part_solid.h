@@ -21,6 +21,9 @@ struct PartSolid {
   bool watertight = false;
 };
 
+/// A part where it belongs, as PartSolid::mesh has it, its faces outwards.
+TriangleMesh part_in_scene(const BaseParts& parts, int part, double size_mm);
+
 /// A closed part keeps its own sides and back: what stands before it is joined to it and what is carved taken away, by
 /// exact booleans. An open one gets a flat back, and sides that lie in the rays past its edge. What is raised or
 /// carved by less than 0.02 mm is left as the part has it, and the relief ends 0.01 mm within what is seen.

@@ -8,7 +8,6 @@
 #include "geometry/booleans/booleans.h"
 #include "geometry/mesh/measures.h"
 #include "relief/base/seen_regions.h"
-#include "relief/tiles/relief_tile.h"
 
 namespace formwright {
 namespace {
@@ -22,16 +21,11 @@ TriangleMesh surface_before(const ReliefPieces& cut, int part) {
   return {cut.V, cut.F(faces, Eigen::all)};
 }
 
-TriangleMesh outwards(TriangleMesh mesh) {
-  if (signed_volume(mesh) < 0) mesh.F.col(1).swap(mesh.F.col(2));
-  return mesh;
-}
-
 void refuse_overlaps(const BaseParts& parts, double size_mm, Context& context) {
   std::vector<TriangleMesh> meshes;
   std::vector<BoundingBox> boxes;
   for (int k = 0; k < parts.count(); ++k) {
-    meshes.push_back(outwards({to_scene(parts.mesh(k).V, size_mm), parts.mesh(k).F}));
+    meshes.push_back(part_in_scene(parts, k, size_mm));
     boxes.push_back(bounding_box(meshes.back()));
   }
   for (int a = 0; a < parts.count(); ++a)

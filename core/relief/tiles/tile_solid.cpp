@@ -10,6 +10,7 @@
 #include "geometry/mesh/adjacency.h"
 #include "geometry/mesh/file_grid.h"
 #include "geometry/mesh/measures.h"
+#include "geometry/mesh/mesh_lists.h"
 #include "relief/forest/plan/pillar.h"
 #include "relief/right_triangle_network.h"
 
@@ -28,14 +29,7 @@ struct MeshParts {
   void face(int a, int b, int c) {
     if (a != b && b != c && c != a) faces.emplace_back(a, b, c);
   }
-  TriangleMesh mesh() const {
-    TriangleMesh mesh;
-    mesh.V.resize(static_cast<Eigen::Index>(places.size()), 3);
-    for (std::size_t i = 0; i < places.size(); ++i) mesh.V.row(static_cast<Eigen::Index>(i)) = places[i].transpose();
-    mesh.F.resize(static_cast<Eigen::Index>(faces.size()), 3);
-    for (std::size_t f = 0; f < faces.size(); ++f) mesh.F.row(static_cast<Eigen::Index>(f)) = faces[f].transpose();
-    return mesh;
-  }
+  TriangleMesh mesh() const { return mesh_of(places, faces); }
 };
 
 /// Columns without a length are one node.

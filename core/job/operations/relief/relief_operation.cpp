@@ -13,10 +13,10 @@
 #include "job/contract/operation_options.h"
 #include "job/operations/relief/painting/painted_report.h"
 #include "job/operations/relief/painting/painting_file.h"
-#include "job/operations/relief/pieces/parts_plan.h"
+#include "job/operations/relief/pieces/made_pieces.h"
 #include "job/operations/relief/pieces/piece_files.h"
-#include "job/operations/relief/pieces/placement_plan.h"
 #include "job/operations/relief/relief_base.h"
+#include "job/operations/relief/relief_declaration.h"
 #include "job/operations/relief/solved_relief.h"
 #include "job/operations/relief/thick_output.h"
 #include "relief/height_map.h"
@@ -29,107 +29,6 @@ namespace {
 constexpr double nodes_of_picture = 256;   // across the base where it is only looked at
 constexpr double gap_worth_a_note = 1e-6;  // of the shape error: below, no eye and no gauge tells the difference
 constexpr double unbounded_mm = 1e30;      // stands for "no bound" in relief.ply, where infinity has no safe spelling
-
-std::vector<OutputInfo> relief_outputs() {
-  return {{"relief.ply", "application/x-ply", "PLY",
-           "The relief as a mesh, with depth, depth limits, visibility and shading difference at every vertex.", true},
-          {"relief.stl", "model/stl", "STL",
-           "The relief with its plate as a watertight solid, lying on its back, for 3D printing.", true},
-          {"relief.glb", "model/gltf-binary", "GLB", "The relief on its plate, for viewing.", true},
-          {"heightmap.png", "image/png", "Height map",
-           "Height map with 16-bit grey levels; white is the full thickness. Its scale is in the report.", true},
-          {"base.ply", "application/x-ply", "Base",
-           "The base in the same axes as relief.ply, to draw behind it; a flat plate where the base is flat.", false},
-          {"relief.3mf", "model/3mf", "3MF", "The solid for a slicer.", false},
-          {"relief.obj", "model/obj", "OBJ", "The solid for a 3D modelling program.", false}};
-}
-
-std::vector<ReportField> relief_report_fields() {
-  return {
-      {"vertices", "Vertices", "", "Number of vertices of the repaired model."},
-      {"faces", "Triangles", "", "Number of triangles of the repaired model."},
-      {"visible_vertices", "Visible vertices", "", "Number of vertices that nothing hides from the viewpoint."},
-      {"energy", "Shape error", "",
-       "How much the curvature of the relief differs from that of the model, on the scale that the solver minimises; 0 is no difference."},
-      {"energy_linear", "Shape error of plain scaling", "",
-       "Shape error if all depths are simply scaled to the thickness."},
-      {"normal_error_mean_deg", "Shading difference", "°",
-       "Mean angle between the surface normals of relief and model over the visible surface. Smaller looks more like the model."},
-      {"normal_error_linear_mean_deg", "Shading difference of plain scaling", "°",
-       "Mean angle between the surface normals over the visible surface if all depths are simply scaled to the thickness."},
-      {"normal_error_mean_deg_image", "Shading difference in the picture", "°",
-       "Mean angle between the surface normals of relief and model over the picture seen from the viewpoint."},
-      {"normal_error_linear_mean_deg_image", "Shading difference in the picture of plain scaling", "°",
-       "Mean angle between the surface normals over the picture if all depths are simply scaled to the thickness."},
-      {"picture_similarity", "Likeness of the pictures", "",
-       "Mean structural similarity (SSIM) of pictures of relief and model from the viewpoint under 32 lights, one arc minute a pixel; 1 is equal. Only with compare_pictures."},
-      {"picture_similarity_linear", "Likeness of the pictures of plain scaling", "",
-       "The same if all depths are simply scaled to the thickness."},
-      {"false_edges_percent", "False edges", "%",
-       "Share of the relief's picture that lies on edges which the model does not have. Only with compare_pictures."},
-      {"false_edges_linear_percent", "False edges of plain scaling", "%",
-       "The same if all depths are simply scaled to the thickness."},
-      {"bound_violation_max_mm", "Largest excess over the thickness", "mm",
-       "Largest distance by which a vertex leaves the allowed thickness; practically 0."},
-      {"order_violation_max_mm", "Largest depth order violation", "mm",
-       "Largest distance by which a hidden point comes in front of what hides it; practically 0."},
-      {"order_rows", "Depth order conditions", "", "Number of conditions that keep what is in front in front."},
-      {"order_rows_left_out", "Depth order conditions left out", "",
-       "Number of conditions that contradict the limits of depth, where the base bends by more than the relief is thick."},
-      {"vertices_beyond_base", "Vertices beyond the base", "",
-       "Number of vertices that have no base behind them and are free in depth."},
-      {"base_parts", "Parts of the base", "",
-       "Number of parts of a base from a file, each of which carries what is seen before it; 1 where it is taken as one "
-       "surface. Only with such a base."},
-      {"painted_vertices", "Painted vertices", "",
-       "Number of vertices of each kind that is painted: matters_more, matters_less, free, on_base, own_thickness. Only with a painting."},
-      {"stands_out_max_mm", "Largest height above the base", "mm",
-       "How far the relief stands out from its base at most; more than the thickness where it is free or painted so. Only with a painting or only_outline."},
-      {"kkt_residual", "KKT residual", "",
-       "Relative error of the optimality conditions (Karush-Kuhn-Tucker) at the solution; practically 0."},
-      {"relative_gap", "Distance from the best", "",
-       "The smallest possible shape error is at most this share below that of the relief; 0 for the best relief itself."},
-      {"rounds", "Iterations", "", "Number of iterations of the numerical method."},
-      {"balanced_steps", "Steps for broad forms", "",
-       "Number of steps that the appearance \"balanced\" took after the numerical method; 0 for \"detail\"."},
-      {"active_constraints", "Active limits", "", "Number of points where the relief touches a limit on its depth."},
-      {"method_used", "Solver used", "", "The numerical method that was used: exchange or interior_point."},
-      {"factor_reused", "Factorisation reused", "",
-       "Whether the matrix factorisation of an earlier job on the same model and viewpoint was used again."},
-      {"scale_mm_per_unit", "Scale", "mm", "Length in millimetres of one unit of the model file after scaling."},
-      {"viewpoint_mm", "Viewpoint", "mm",
-       "Position of the viewer in the axes of the scaled model. For far views, a point on the plane from which depths are measured."},
-      {"direction", "Looking direction", "",
-       "Direction in which the viewer looks, as a unit vector in the model's axes."},
-      {"right", "Right", "", "Direction to the right in the picture, as a unit vector in the model's axes."},
-      {"up", "Up", "", "Direction upwards in the picture, as a unit vector in the model's axes."},
-      {"plate_centre_mm", "Centre of the plate's front", "mm",
-       "Centre of the plate's front face, in the axes of the scaled model."},
-      {"distance_mm", "Viewing distance", "mm", "Distance from the viewpoint to the plate; null for far views."},
-      {"size_mm", "Size of the solid", "mm", "Width, height and depth of the solid, including its plate."},
-      {"watertight", "Watertight", "", "Whether the solid has no holes, as slicers need; checked on the result."},
-      {"volume_mm3", "Volume of the solid", "mm³", "Material that the solid takes. Only with a thick surface."},
-      {"hollows", "Hollows", "", "Number of closed spaces within the solid. Only with a thick surface."},
-      {"loose_parts", "Loose parts", "",
-       "Number of parts of the solid that touch neither the plate nor anything joined to it. Only with a thick surface."},
-      {"smallest_gap_mm", "Smallest gap", "mm",
-       "Gaps behind the surface narrower than this are filled. Only with a thick surface."},
-      {"heightmap_pixel_mm", "Height map pixel", "mm", "Width and height of one pixel of the height map."},
-      {"heightmap_mm_per_level", "Height map level", "mm",
-       "Height of one of the 65,535 grey levels of the height map; level 0 is at the height of the floor."},
-      {"heightmap_floor_mm", "Height map floor", "mm",
-       "Height of the map's black above the front of a flat plate; below 0 where the base or the carving goes deeper."},
-      {"seconds_read", "Reading", "s", "Time for reading and repairing the file; 0 if it was read before."},
-      {"seconds_setup", "Set-up", "s",
-       "Time for placing the viewpoint and setting up the equations; 0 if done before."},
-      {"seconds_solve", "Solving", "s", "Time for solving, including the factorisation."},
-      {"seconds_factorise", "Factorising", "s",
-       "Time for the matrix factorisation, which a change of thickness does not need again."},
-      {"seconds_write", "Writing", "s", "Time for writing the output files."},
-      {"peak_memory_mb", "Peak memory", "MB", "Largest amount of memory that the process used."},
-      {"repairs", "Repairs", "", "What was found wrong in the model and repaired, as sentences."},
-      {"notes", "Notes", "", "What to know about the result, as sentences."}};
-}
 
 Json vector_json(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
@@ -257,16 +156,6 @@ std::vector<std::string> notes_of(const Relief& relief) {
   return notes;
 }
 
-void add_notes_on_parts(const BaseParts& parts, const Relief& relief, std::vector<std::string>& notes) {
-  int hidden = 0;
-  for (int part = 0; part < parts.count(); ++part) hidden += parts.seen(part).empty();
-  if (hidden > 0)
-    notes.push_back(std::to_string(hidden) + (hidden == 1 ? " part" : " parts") +
-                    " of the base cannot be seen from the viewpoint, and will be no pieces.");
-  if (relief.vertices_beyond_base > 0)
-    notes.push_back("What the model has between the parts of the base or beside them is left out.");
-}
-
 /// A job that asks for all files gets those that there are. One that asks for nothing but pieces is refused where there
 /// are none.
 void check_pieces(const OperationCall& call, bool in_pieces) {
@@ -291,7 +180,7 @@ OperationResult run_relief(const OperationCall& call, const ReliefOptions& optio
   const std::shared_ptr<const LoadedModel>& loaded = solved.loaded;
   const std::shared_ptr<ReliefSolver>& solver = solved.solver;
   const Relief& relief = solved.relief;
-  check_pieces(call, solved.base.bands() != nullptr || solved.base.parts() != nullptr);
+  check_pieces(call, has_pieces(solved));
   Stopwatch watch;
 
   context.progress(0.9, "Writing");
@@ -310,9 +199,8 @@ OperationResult run_relief(const OperationCall& call, const ReliefOptions& optio
           .value_or(std::pair{0.0, 0.0});
   const double range_mm = options.width_mm * (base_depth.second - base_depth.first) +
                           solved.base.max_along_z() * (space.above_mm + space.below_mm);
-  const BaseParts* const parts = solved.base.parts();
-  if (solved.base_from_file) report["base_parts"] = parts != nullptr ? parts->count() : 1;
-  if (parts != nullptr) add_notes_on_parts(*parts, relief, notes);
+  if (solved.base_from_file) report["base_parts"] = solved.base.parts() != nullptr ? solved.base.parts()->count() : 1;
+  std::ranges::move(notes_on_parts(solved), std::back_inserter(notes));
   const Painting& painting = solved.painted.painting;
   if (!painting.empty()) report["painted_vertices"] = painted_vertices(painting);
   if (!painting.empty() || options.only_outline) report["stands_out_max_mm"] = space.above_mm;
@@ -382,17 +270,7 @@ OperationResult run_relief(const OperationCall& call, const ReliefOptions& optio
   }
   if (wants_pieces(call)) {
     const auto span = context.span(0.9, 1, "Making the pieces");
-    const double tolerance_mm = solid_tolerance_share * options.thickness_mm;
-    if (const BaseBands* const bands = solved.base.bands()) {
-      const std::vector<ReliefPiece> pieces =
-          tiled_relief(frame, *bands, relief.pieces, plate, options, tolerance_mm, true, context);
-      add_piece_files(
-          call, placed(pieces), [&] { return placement_plan(pieces, *bands); }, result);
-    } else if (parts != nullptr) {
-      const std::vector<PartPiece> pieces = parted_relief(*parts, relief.pieces, options, tolerance_mm, true, context);
-      add_piece_files(
-          call, placed(pieces), [&] { return parts_plan(pieces); }, result);
-    }
+    add_pieces(call, solved, options, result);
   }
   report["seconds_read"] = loaded->seconds_read + loaded->seconds_repair;
   report["seconds_setup"] = solved.reused ? 0.0 : solver->seconds_setup();

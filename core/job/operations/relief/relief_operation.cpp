@@ -13,7 +13,7 @@
 #include "job/contract/operation_options.h"
 #include "job/operations/relief/painting/painted_report.h"
 #include "job/operations/relief/painting/painting_file.h"
-#include "job/operations/relief/pieces/made_pieces.h"
+#include "job/operations/relief/made_pieces.h"
 #include "job/operations/relief/pieces/piece_files.h"
 #include "job/operations/relief/relief_base.h"
 #include "job/operations/relief/relief_declaration.h"

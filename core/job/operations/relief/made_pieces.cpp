@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "job/operations/relief/pieces/made_pieces.h"
+#include "job/operations/relief/made_pieces.h"
 
 #include "job/operations/relief/pieces/parts_plan.h"
 #include "job/operations/relief/pieces/piece_files.h"

@@ -41,6 +41,54 @@ test('a V groove is carved on a practice mill', async ({ page }) => {
   await expect(strip(page, / is done$/)).toBeVisible({ timeout: 150_000 });
 });
 
+test('a groove is moved and turned by its handles, and stays on its plate', async ({ page }) => {
+  await openSample(page);
+  const field = (name: string) => page.getByRole('textbox', { name, exact: true });
+  const move = page.getByRole('button', { name: /^Move the groove\. / });
+  const turn = page.getByRole('button', { name: /^Turn the (groove|strips)\. / });
+  await page.getByRole('radio', { name: 'Relief', exact: true }).click();
+  await expect(strip(page, 'Preview up to date')).toBeVisible();
+  await expect(move).toBeHidden();
+  await page.getByRole('combobox', { name: 'Shape of the base' }).selectOption('V groove');
+  await expect(strip(page, 'Preview up to date')).toBeVisible();
+  await move.focus();
+  await page.keyboard.press('ArrowRight');
+  await page.keyboard.press('ArrowUp');
+  await expect(field('Shift of the base')).toHaveValue('5');
+  await page.keyboard.press('Control+z');
+  await expect(field('Shift of the base')).toHaveValue('0');
+  await turn.focus();
+  for (let k = 0; k < 6; ++k) await page.keyboard.press('ArrowLeft');
+  await expect(field('Turn of the base')).toHaveValue(/^90/);
+  // Turned by a quarter, it goes up and down.
+  const box = await move.boundingBox();
+  if (box === null) throw new Error('the handle has no place');
+  const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  await page.mouse.move(x + 50, y - 30, { steps: 4 });
+  await page.mouse.up();
+  await expect(field('Shift of the base')).toHaveValue(/^\d/);
+  await expect(field('Shift of the base')).not.toHaveValue('0');
+  await expect(strip(page, 'Preview up to date')).toBeVisible();
+  const there = await move.boundingBox();
+  expect(Math.abs((there?.x ?? 0) - box.x)).toBeLessThan(3);
+  expect((there?.y ?? 0) - box.y).toBeLessThan(-20);
+  // Farther than the plate it does not go; in numbers it is refused.
+  await move.focus();
+  for (let k = 0; k < 30; ++k) await page.keyboard.press('ArrowUp');
+  await expect(strip(page, 'Preview up to date')).toBeVisible();
+  await field('Shift of the base').fill('900');
+  await field('Shift of the base').press('Enter');
+  await expect(
+    page.getByRole('alert').getByText(/shifted by more than half the plate: shift it by less than \d/),
+  ).toBeVisible();
+  await page.getByRole('combobox', { name: 'Shape of the base' }).selectOption('Strips');
+  await expect(strip(page, 'Preview up to date')).toBeVisible();
+  await expect(turn).toBeVisible();
+  await expect(page.getByRole('button', { name: /^Move the strips/ })).toBeHidden();
+});
+
 test('a base from a file takes the place of the built-in shapes, and says where it ends', async ({
   page,
 }) => {

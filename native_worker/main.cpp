@@ -87,7 +87,9 @@ JobResult run_to_result(const Operation& operation, ParsedCommand& command, cons
   std::map<std::string, std::shared_ptr<const Bytes>> blobs;
   for (const auto& [name, path] : command.files) {
     const auto folder = command.folders.find(name);
-    auto bytes = folder == command.folders.end() ? read_file(path, name) : pack_folder(path, folder->second, name);
+    auto bytes = folder == command.folders.end()
+                     ? read_file(path, name)
+                     : pack_folder(path, folder->second.needed, folder->second.optional, name);
     const std::string hash = sha256_hex(*bytes);
     command.message["inputs"][name] = {
         {"sha256", hash}, {"file_name", (path.has_filename() ? path : path.parent_path()).filename().string()}};

@@ -30,7 +30,7 @@ Json preset_list_json(const PresetList& list) {
 Json operation_json(const Operation& operation) {
   Json inputs = Json::array(), properties = Json::object(), presets = Json::array(), outputs = Json::array(),
        report = Json::array();
-  for (const InputInfo& input : operation.inputs)
+  for (const InputInfo& input : operation.inputs) {
     inputs.push_back({{"name", input.name},
                       {"label", input.label},
                       {"required", input.required},
@@ -39,6 +39,8 @@ Json operation_json(const Operation& operation) {
                       {"folder_files", input.folder_files},
                       {"repeatable", input.repeatable},
                       {"help", input.help}});
+    if (!input.optional_folder_files.empty()) inputs.back()["optional_folder_files"] = input.optional_folder_files;
+  }
   for (const PresetList& list : operation.presets) presets.push_back(preset_list_json(list));
   for (const ParameterInfo& info : operation.parameters) properties[info.name] = parameter_schema(info);
   for (const OutputInfo& output : operation.outputs)

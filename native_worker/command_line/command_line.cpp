@@ -73,7 +73,8 @@ void add_file(const InputInfo& input, const std::string& value, ParsedCommand& c
       throw Error(ErrorCode::invalid_input, dashed(input.name), dashed(input.name) + " is given twice.");
     name = input.name + "_" + std::to_string(number);
   }
-  if (!input.folder_files.empty() && std::filesystem::is_directory(value)) command.folders[name] = input.folder_files;
+  if (!input.folder_files.empty() && std::filesystem::is_directory(value))
+    command.folders[name] = {input.folder_files, input.optional_folder_files};
   command.files[name] = value;
 }
 

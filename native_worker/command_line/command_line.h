@@ -11,9 +11,13 @@
 namespace formwright {
 
 struct ParsedCommand {
-  Json message;                                             // without hashes: the files are named below
-  std::map<std::string, std::filesystem::path> files;       // input name -> file
-  std::map<std::string, std::vector<std::string>> folders;  // of these, folders to pack, and which files of theirs
+  Json message;                                        // without hashes: the files are named below
+  std::map<std::string, std::filesystem::path> files;  // input name -> file
+  /// Which files of a folder are packed; optional ones where the folder has them.
+  struct FolderFiles {
+    std::vector<std::string> needed, optional;
+  };
+  std::map<std::string, FolderFiles> folders;  // of these, folders to pack
   std::filesystem::path out, results;  // results: where intermediate results are kept; empty for out/simulations
   bool quiet = false, help = false;
 };

@@ -44,13 +44,16 @@ std::shared_ptr<const Bytes> read_checked_file(const std::filesystem::path& path
 }
 
 std::shared_ptr<const Bytes> pack_folder(const std::filesystem::path& folder, const std::vector<std::string>& names,
-                                         const std::string& where) {
+                                         const std::vector<std::string>& optional, const std::string& where) {
   std::vector<std::shared_ptr<const Bytes>> kept;
   std::map<std::string, ByteView> files;
-  for (const std::string& name : names) {
+  const auto add = [&](const std::string& name) {
     kept.push_back(read_file(folder / name, where));
     files[name] = *kept.back();
-  }
+  };
+  for (const std::string& name : names) add(name);
+  for (const std::string& name : optional)
+    if (std::filesystem::exists(folder / name)) add(name);
   return std::make_shared<const Bytes>(pack_files(files, Context()));
 }
 

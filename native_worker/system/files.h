@@ -22,10 +22,10 @@ std::shared_ptr<const Bytes> read_checked_file(const std::filesystem::path& path
                                                const std::string& where,
                                                std::uintmax_t limit_bytes = std::uintmax_t{4} << 30);
 
-/// A zip of these files of a folder (job/file_pack.h). Throws Error{invalid_input, where} naming the file that is
-/// missing.
+/// A zip of these files of a folder (job/file_pack.h), and of those of `optional` that it has. Throws
+/// Error{invalid_input, where} naming the file that is missing.
 std::shared_ptr<const Bytes> pack_folder(const std::filesystem::path& folder, const std::vector<std::string>& names,
-                                         const std::string& where);
+                                         const std::vector<std::string>& optional, const std::string& where);
 
 /// Intermediate results as files in a folder, which is made when it is needed. Safe for several processes at once:
 /// results are put in their place whole and with their checksum, and the same key always means the same bytes. One that

@@ -4,7 +4,9 @@
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/matchers/catch_matchers_floating_point.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <random>
 
@@ -63,9 +65,129 @@ TEST_CASE("ReliefModel.APlaneHasTheBrightnessOfLambertsLaw") {
       r.surface.height_mm(row, c) = 0.3 * static_cast<double>(c);
   const ReliefModel model({r});
   const Vec3 normal = Vec3(-0.3, 0, 1).normalized();
-  const double expected = 0.1 + 0.9 * normal.dot(r.setup.light_direction.normalized());
+  // All points are as bright as the brightest.
+  const double expected = 1;
+  CHECK(normal.dot(r.setup.light_direction.normalized()) > 0);
   const Eigen::MatrixXd shaded = model.predict(0, model.nominal(), Context());
   for (Eigen::Index i = 0; i < shaded.rows(); ++i) CHECK_THAT(shaded(i, 0), WithinAbs(expected, 1e-9));
+}
+
+/// A cylinder of radius 80 mm about an axis along y at x = 50, 100 mm wide; its middle is at z = 0.
+constexpr double radius_mm = 80;
+double cylinder(double x, double) { return std::sqrt(radius_mm * radius_mm - (x - 50) * (x - 50)) - radius_mm; }
+
+ReliefSurface surface_of(double pixel_mm, const std::function<double(double, double)>& height) {
+  ReliefSurface s = surface_of(pixel_mm);
+  for (Eigen::Index r = 0; r < s.height_mm.rows(); ++r)
+    for (Eigen::Index c = 0; c < s.height_mm.cols(); ++c)
+      s.height_mm(r, c) = height(s.lower_mm.x() + pixel_mm * static_cast<double>(c),
+                                 s.lower_mm.y() + pixel_mm * static_cast<double>(r));
+  return s;
+}
+
+TEST_CASE("ReliefModel.ACurvedBaseIsSeenWhereThePictureShowsIt") {
+  // A camera 150 mm above the middle of the heights, a picture that is true in the plane of the foremost line. The ray
+  // through (x, 0) meets the circle in closed form; Lambert's law gives the brightness there.
+  double before = 0;
+  for (const double pixel_mm : {1.0, 0.5, 0.25}) {
+    PhotographedRelief r;
+    r.name = "cylinder";
+    r.surface = surface_of(pixel_mm, cylinder);
+    const Vec2 range = r.surface.height_range_mm();
+    r.setup.light_direction = Vec3(-0.8, 0.6, 0.7);
+    r.setup.straightened_at_mm = 0;
+    r.setup.camera_height_mm = 150;
+    const double camera_z = 0.5 * range.sum() + 150;
+    const Vec3 light = r.setup.light_direction.normalized();
+    for (int k = 0; k < 80; ++k) {
+      const double x = 50 + 0.55 * (k - 40);  // on the plane z = 0
+      // (50 + (x - 50) t, camera_z (1 - t)) on the circle about (50, -R): the nearer of the two.
+      const double d = x - 50, a = d * d + camera_z * camera_z, b = -2 * camera_z * (camera_z + radius_mm),
+                   c = (camera_z + radius_mm) * (camera_z + radius_mm) - radius_mm * radius_mm;
+      const double t = (-b - std::sqrt(b * b - 4 * a * c)) / (2 * a);
+      const Vec3 normal(d * t / radius_mm, 0, std::sqrt(1 - d * t * d * t / (radius_mm * radius_mm)));
+      r.points.push_back({Vec2(x, 50), 7 * (0.1 + 0.9 * std::max(0.0, normal.dot(light))), 0.07});
+    }
+    const ReliefModel model({r});
+    const Eigen::MatrixXd shaded = model.predict(0, model.nominal(), Context());
+    const double error = (shaded - model.measurements()[0].measured).cwiseAbs().maxCoeff();
+    INFO("pixels of " << pixel_mm << " mm: " << error);
+    CHECK(error < 2e-4 * pixel_mm * pixel_mm);
+    if (before > 0) CHECK(error < 0.35 * before);
+    before = error;
+    // A picture taken as from far away would be wrong by far more.
+    r.setup.camera_height_mm = 0;
+    const ReliefModel far({r});
+    const Eigen::MatrixXd wrong = far.predict(0, far.nominal(), Context());
+    CHECK((wrong - far.measurements()[0].measured).cwiseAbs().maxCoeff() > 0.005);
+  }
+}
+
+TEST_CASE("ReliefModel.EveryPictureHasAnExposureOfItsOwn") {
+  PhotographedRelief one = relief(1, 200, 2), two = relief(1, 200, 4);
+  two.setup.light_direction = Vec3(0.9, 0.1, 0.5);
+  const ReliefModel truth({one, two});
+  for (int k = 0; k < 2; ++k) {
+    const Eigen::MatrixXd shaded = truth.predict(k, truth.nominal(), Context());
+    for (std::size_t i = 0; i < 200; ++i)
+      (k == 0 ? one : two).points[i].brightness = shaded(static_cast<Eigen::Index>(i), 0) * (k == 0 ? 0.02 : 300);
+    for (ShadedPoint& p : (k == 0 ? one : two).points) p.sigma = k == 0 ? 1e-4 : 1;
+  }
+  const ReliefModel model({one, two});
+  for (int k = 0; k < 2; ++k) {
+    const Eigen::MatrixXd shaded = model.predict(k, model.nominal(), Context());
+    CHECK((shaded - model.measurements()[static_cast<std::size_t>(k)].measured).cwiseAbs().maxCoeff() < 1e-12);
+  }
+}
+
+TEST_CASE("ReliefModel.DepthCountsFromTheBaseWhereItIsKnown") {
+  ReliefSurface s = surface_of(1, [](double x, double y) { return cylinder(x, y) + 0.1 * landscape(x, y); });
+  s.base_mm = surface_of(1, cylinder).height_mm;
+  const ReliefSurface made = s.made_with(0, 0.25);
+  CHECK((made.height_mm - s.base_mm - 0.75 * (s.height_mm - s.base_mm)).cwiseAbs().maxCoeff() < 1e-12);
+  CHECK((s.made_with(0, 1).height_mm - s.base_mm).cwiseAbs().maxCoeff() < 1e-12);
+  s.base_mm.resize(0, 0);
+  CHECK((s.made_with(0, 0.25).height_mm - 0.75 * s.height_mm).cwiseAbs().maxCoeff() < 1e-12);
+}
+
+TEST_CASE("ReliefModel.WhatLiesBesideTheReliefIsNotOfIt") {
+  // A round plate: the corners of its rectangle are not covered, and their heights mean nothing.
+  PhotographedRelief r = relief(1, 2000, 6);
+  ReliefSurface& s = r.surface;
+  s.covered.setConstant(s.height_mm.rows(), s.height_mm.cols(), true);
+  for (Eigen::Index row = 0; row < s.height_mm.rows(); ++row)
+    for (Eigen::Index c = 0; c < s.height_mm.cols(); ++c)
+      if (std::hypot(static_cast<double>(row) - 49.5, static_cast<double>(c) - 49.5) > 45) {
+        s.covered(row, c) = false;
+        s.height_mm(row, c) = -500;
+      }
+  const ReliefModel model({r});
+  CHECK(model.points_beside() > 300);
+  CHECK(model.points_beside() + model.measurements()[0].measured.rows() == 2000);
+  CHECK(s.height_range_mm().x() > -20);
+  // The same points over the whole landscape, but for those at the rim, whose normals look one way only.
+  PhotographedRelief whole = r;
+  whole.surface = surface_of(1);
+  whole.points.erase(std::remove_if(whole.points.begin(), whole.points.end(),
+                                    [&](const ShadedPoint& p) { return !s.holds(p.place_mm); }),
+                     whole.points.end());
+  // Both pictures in one scale: the middles of the heights differ, and a far camera does not see that.
+  r.setup.camera_height_mm = whole.setup.camera_height_mm = 0;
+  const ReliefModel here({r}), all({whole});
+  const Eigen::VectorXd u = here.nominal();
+  const Eigen::MatrixXd a = here.predict(0, u, Context()), b = all.predict(0, u, Context());
+  REQUIRE(a.rows() == b.rows());
+  std::vector<double> ratio;
+  for (Eigen::Index i = 0; i < a.rows(); ++i) {
+    const Vec2& at = whole.points[static_cast<std::size_t>(i)].place_mm;
+    if ((at - Vec2(50, 50)).norm() < 42) ratio.push_back(a(i, 0) / b(i, 0));
+  }
+  REQUIRE(ratio.size() > 800);
+  const auto [low, high] = std::minmax_element(ratio.begin(), ratio.end());
+  CHECK(*high / *low < 1 + 1e-9);
+  // Blur takes nothing from beside.
+  const Eigen::MatrixXd soft = blurred(s.height_mm, 3, s.covered);
+  CHECK(s.covered.select(soft.array(), 0.0).minCoeff() > -20);
 }
 
 TEST_CASE("ReliefModel.AWallThrowsAShadowAsLongAsTheSunIsLow") {
@@ -104,6 +226,7 @@ TEST_CASE("ReliefModel.NamesWhatWasDoneToIt") {
                                    {"printer_blur", "printer_blur_mm", 0.9},
                                    {"depth_shrinkage", "depth_shrinkage", 0.2},
                                    {"viewer_offset", "viewer_offset_y_mm", 80}};
+  constexpr double exposure = 0.4;
   int right = 0;
   for (const Case& c : cases) {
     // Made on heights four times as fine, in another exposure, with noise.
@@ -112,10 +235,9 @@ TEST_CASE("ReliefModel.NamesWhatWasDoneToIt") {
     if (std::string_view(c.cause) == "cast_shadow") fine.setup.light_direction.z() = 0.12;
     const ReliefModel truth({fine});
     Eigen::VectorXd u = truth.nominal();
-    u[index_of(truth, "exposure")] = 0.3;
     u[index_of(truth, "ambient")] = 0.08;
     u[index_of(truth, c.parameter)] = c.value;
-    const Eigen::MatrixXd brightness = truth.predict(0, u, Context());
+    const Eigen::MatrixXd brightness = exposure * truth.predict(0, u, Context());
     PhotographedRelief seen = relief(0.5, 1500, 3);
     seen.setup.light_direction = fine.setup.light_direction;
     std::mt19937 random(5);
@@ -153,6 +275,59 @@ TEST_CASE("ReliefModel.NamesWhatWasDoneToIt") {
   CHECK(right >= 6);
 }
 
+TEST_CASE("ReliefModel.NamesCausesOnACurvedBaseFromTwoPictures") {
+  // Relief on a cylinder, lit from two sides, photographed from 400 mm with exposures that differ fiftyfold.
+  struct Case {
+    const char *cause, *parameter;
+    double value;
+  };
+  static constexpr Case cases[] = {{"depth_shrinkage", "depth_shrinkage", 0.25},
+                                   {"printer_blur", "printer_blur_mm", 0.9},
+                                   {"gloss", "gloss", 0.4},
+                                   {"viewer_offset", "viewer_offset_x_mm", 60}};
+  const auto on_cylinder = [](double x, double y) { return cylinder(x, y) + 0.6 * landscape(x, y); };
+  const auto pictures = [&](double pixel_mm) {
+    std::vector<PhotographedRelief> list;
+    for (const Vec3& light : {Vec3(-0.8, 0.6, 0.7), Vec3(0.7, 0.3, 0.8)}) {
+      PhotographedRelief r = relief(pixel_mm, 900, static_cast<unsigned>(7 + list.size()));
+      r.surface = surface_of(pixel_mm, on_cylinder);
+      r.surface.base_mm = surface_of(pixel_mm, cylinder).height_mm;
+      r.setup.light_direction = light;
+      r.setup.camera_height_mm = 400;
+      r.setup.straightened_at_mm = 0;
+      list.push_back(std::move(r));
+    }
+    return list;
+  };
+  for (const Case& c : cases) {
+    INFO(c.cause);
+    const ReliefModel truth(pictures(0.25));
+    Eigen::VectorXd u = truth.nominal();
+    u[index_of(truth, c.parameter)] = c.value;
+    std::vector<PhotographedRelief> seen = pictures(0.5);
+    std::mt19937 random(5);
+    std::normal_distribution<double> noise(0, 0.01);
+    for (int k = 0; k < 2; ++k) {
+      const Eigen::MatrixXd brightness = truth.predict(k, u, Context());
+      const double exposure = k == 0 ? 0.2 : 10;
+      PhotographedRelief& picture = seen[static_cast<std::size_t>(k)];
+      for (std::size_t i = 0; i < picture.points.size(); ++i)
+        picture.points[i] = {picture.points[i].place_mm,
+                             exposure * std::max(0.0, brightness(static_cast<Eigen::Index>(i), 0) + noise(random)),
+                             0.01 * exposure};
+    }
+    const ReliefModel model(std::move(seen));
+    SimulationBag bag(model);
+    Context context;
+    DiagnosisOptions options;
+    options.pairs = false;
+    const Diagnosis d = diagnose(bag, options, context);
+    REQUIRE(!d.verdict.empty());
+    CHECK(model.causes()[static_cast<std::size_t>(d.verdict.front())].name == c.cause);
+    CHECK(d.held_out.after.mean < d.held_out.before.mean);
+  }
+}
+
 TEST_CASE("ReliefModel.WrongFilesGetAClearSentence") {
   const auto refused = [](const char* json, const char* words) {
     try {
@@ -168,8 +343,12 @@ TEST_CASE("ReliefModel.WrongFilesGetAClearSentence") {
   refused(R"({"light_direction": [1, 2]})", "three numbers");
   refused(R"({"light_direction": [1, 0, -1]})", "viewer");
   refused(R"({"light_direction": [1, 0, 1], "camera_height_mm": -3})", "camera_height_mm");
+  refused(R"({"light_direction": [1, 0, 1], "straightened_at_mm": "0"})", "straightened_at_mm");
   CHECK_THROWS_AS(read_shaded_points(as_bytes(std::string_view("x_mm,y_mm\n1,2\n"))), Error);
   CHECK_THROWS_AS(ReliefModel({relief(1, 5, 1)}), Error);
+  PhotographedRelief below = relief(1, 50, 1);
+  below.setup.straightened_at_mm = 600;
+  CHECK_THROWS_AS(ReliefModel({below}), Error);
 }
 
 }  // namespace

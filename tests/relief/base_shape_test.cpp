@@ -2,7 +2,10 @@
 #include "relief/base/base_shape.h"
 
 #include <catch2/catch_test_macros.hpp>
+#include <catch2/generators/catch_generators.hpp>
+#include <catch2/matchers/catch_matchers.hpp>
 #include <catch2/matchers/catch_matchers_floating_point.hpp>
+#include <catch2/matchers/catch_matchers_string.hpp>
 
 #include <cmath>
 #include <numbers>
@@ -12,6 +15,7 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::ContainsSubstring;
 using Catch::Matchers::WithinAbs;
 
 ReliefOptions on(BaseShape shape, Projection projection = Projection::perspective) {
@@ -53,6 +57,43 @@ TEST_CASE("BaseShape.TurnsOnThePlate") {
   for (const double t : {-0.2, 0.0, 0.1, 0.4})
     for (const double along : {-0.3, 0.2})
       CHECK_THAT(base.depth_at(c * t - s * along, s * t + c * along).value(), WithinAbs(depth_of(options, t), 1e-12));
+}
+
+TEST_CASE("BaseShape.IsShiftedAcrossItsDirectionBeforeItIsTurned") {
+  const ViewFrame frame = make_view_frame(test::icosphere(2), on(BaseShape::flat));
+  const double angle = GENERATE(0.0, 30.0, -90.0), shift = GENERATE(-0.25, 0.1);
+  const double c = std::cos(angle * std::numbers::pi / 180), s = std::sin(angle * std::numbers::pi / 180);
+  for (const BaseShape shape : {BaseShape::cylinder, BaseShape::wave, BaseShape::groove}) {
+    INFO(static_cast<int>(shape));
+    ReliefOptions options = on(shape), still = options;
+    still.base_turn_deg = options.base_turn_deg = angle;
+    options.base_shift_mm = shift * options.width_mm;
+    const BaseSurface base(base_shape(options, frame)), before(base_shape(still, frame));
+    // The whole plate is covered, its corners, too.
+    for (const double x : {-0.6, -0.1, 0.23, 0.6})
+      for (const double y : {-0.6, 0.0, 0.6}) {
+        REQUIRE(base.depth_at(x, y).has_value());
+        const double t = c * x + s * y, along = c * y - s * x;
+        if (std::abs(t - shift) > 0.55 || std::abs(along) > 0.55) continue;
+        const double there = before.depth_at(c * (t - shift) - s * along, s * (t - shift) + c * along).value();
+        // Other places of the wave are sampled.
+        CHECK_THAT(base.depth_at(x, y).value(), WithinAbs(there, shape == BaseShape::wave ? 1e-5 * 0.2 : 1e-12));
+      }
+  }
+}
+
+TEST_CASE("BaseBands.AreShiftedWithTheirBorders") {
+  ReliefOptions options = on(BaseShape::stairs);
+  options.base_steps = 3;
+  const ViewFrame frame = make_view_frame(test::icosphere(2), options);
+  const BaseBands still = base_bands(options, frame).value();
+  options.base_shift_mm = 7;
+  const BaseBands shifted = base_bands(options, frame).value();
+  REQUIRE(shifted.border().size() == 2);
+  for (const std::size_t k : {0U, 1U}) CHECK_THAT(shifted.border()[k], WithinAbs(still.border()[k] + 0.07, 1e-15));
+  const BaseSurface base(base_shape(options, frame));
+  CHECK_THAT(base.depth_at(0, shifted.border()[0] - 1e-6).value(), WithinAbs(0, 1e-12));
+  CHECK_THAT(base.depth_at(0, shifted.border()[0] + 1e-6).value(), WithinAbs(0.1, 1e-12));
 }
 
 TEST_CASE("BaseShape.TakesTheWidthOfThePlateWithoutAPitch") {
@@ -146,6 +187,17 @@ TEST_CASE("BaseShape.RefusesWhatCannotBe") {
   options = on(BaseShape::wave);
   options.base_pitch_mm = 0.5;
   CHECK_THROWS_AS(base_shape(options, frame), Error);
+  // Half a plate of 120 mm, and one of three steps.
+  options = on(BaseShape::groove);
+  options.base_shift_mm = -60.01;
+  CHECK_THROWS_WITH(base_shape(options, frame), ContainsSubstring("shift it by less than 60 mm"));
+  options = on(BaseShape::stairs);
+  options.base_steps = 3;
+  options.base_shift_mm = 41;
+  CHECK_THROWS_WITH(base_shape(options, frame), ContainsSubstring("one step"));
+  options.base_shift_mm = 1000;
+  options.base = BaseShape::strips;
+  CHECK_NOTHROW(base_shape(options, frame));
   CHECK_THROWS_AS(base_from_file(TriangleMesh{Positions(0, 3), Triangles(0, 3)}, options), Error);
 }
 

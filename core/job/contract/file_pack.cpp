@@ -20,7 +20,11 @@ Bytes pack_files(const std::map<std::string, ByteView>& files, const Context& co
 }
 
 std::map<std::string, Bytes> unpack_files(const InputBlob& input, const std::string& where,
-                                          const std::vector<std::string>& needed, Context& context) {
+                                          const std::vector<std::string>& needed, Context& context,
+                                          const std::vector<std::string>& optional) {
+  const auto is_one_of = [](const std::vector<std::string>& list, const std::string& name) {
+    return std::find(list.begin(), list.end(), name) != list.end();
+  };
   ReadOptions options;
   options.where = where;
   const MeshSource source(*input.bytes, input.file_name, options, context);
@@ -30,7 +34,7 @@ std::map<std::string, Bytes> unpack_files(const InputBlob& input, const std::str
     const std::string name = entry.name.substr(entry.name.find_last_of('/') + 1);
     // Some archivers add notes of their own to every file.
     if (name.empty() || name.starts_with("._") || files.contains(name)) continue;
-    if (std::find(needed.begin(), needed.end(), name) == needed.end()) continue;
+    if (!is_one_of(needed, name) && !is_one_of(optional, name)) continue;
     files.emplace(name, archive.read(entry, max_unpacked_bytes));
   }
   std::string list;

@@ -14,7 +14,8 @@ Bytes pack_files(const std::map<std::string, ByteView>& files, const Context& co
 /// The files of a pack by their names without folders. Throws Error{invalid_input, where}: no zip archive, or one of
 /// `needed` is missing.
 std::map<std::string, Bytes> unpack_files(const InputBlob& input, const std::string& where,
-                                          const std::vector<std::string>& needed, Context& context);
+                                          const std::vector<std::string>& needed, Context& context,
+                                          const std::vector<std::string>& optional = {});
 
 /// All of a repeatable input, with their names: `name`, `name`_2, ...
 std::vector<std::pair<std::string, const InputBlob*>> inputs_named(const OperationCall& call, const std::string& name);

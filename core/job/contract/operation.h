@@ -23,8 +23,9 @@ struct InputInfo {
   std::string object_file =
       "";  // its name in the folder of a measured object, "" when it has none: --object DIR gives them all
   std::vector<std::string> folder_files =
-      {};                   // a zip of these files, which the command line packs from a folder; empty for plain files
-  bool repeatable = false;  // more of them as name_2, name_3, ...
+      {};  // a zip of these files, which the command line packs from a folder; empty for plain files
+  std::vector<std::string> optional_folder_files = {};  // packed with them where the folder has them
+  bool repeatable = false;                              // more of them as name_2, name_3, ...
 };
 
 struct OutputInfo {

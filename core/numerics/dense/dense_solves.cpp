@@ -121,8 +121,10 @@ void backward_block(const double* l, std::size_t stride, int width, int height, 
 }
 
 template void forward_block<1>(const double*, std::size_t, int, int, double*);
+template void forward_block<few_sides>(const double*, std::size_t, int, int, double*);
 template void forward_block<many_sides>(const double*, std::size_t, int, int, double*);
 template void backward_block<1>(const double*, std::size_t, int, int, double*);
+template void backward_block<few_sides>(const double*, std::size_t, int, int, double*);
 template void backward_block<many_sides>(const double*, std::size_t, int, int, double*);
 
 }  // namespace formwright::dense

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/error.h"
 #include "numerics/qp/interior_point/active_set_polish.h"
@@ -25,6 +26,10 @@ constexpr double share_of_exchange = 0.6, share_of_interior_point = 0.95;
 // Of the work that the interior point would take: what an exchange may take before it is given up. It is faster where
 // few constraints hold.
 constexpr double exchange_share = 0.6, exchange_only_share = 20;
+// From this share on it is given up as soon as contacts spread: more constraints are violated than a round before,
+// though the worst of those have joined. Thin reliefs that end in thousands of contacts show it early, and those that
+// end sooner by the exchange do not (docs/numerics.md).
+constexpr double share_to_judge = 0.03;
 constexpr double min_exchange_work = 3e8;  // about a tenth of a second
 constexpr double usual_iterations = 20;
 constexpr double factor_growth = 3, entry_growth = 2;        // of the factor by order rows
@@ -95,9 +100,10 @@ BoundedQp::Implementation::Outcome BoundedQp::Implementation::solve(const Rows& 
                                                                     Context& context) {
   Outcome outcome;
   // Leaves what was found so far in the outcome where the work ran out.
-  const auto exchange_within = [&](double max_work) {
+  const auto exchange_within = [&](double max_work, double work_to_judge) {
     const std::vector<RowKey> base = base_of(rows);
-    outcome.result = exchange.solve(rows, base, {options.violation_tolerance, options.max_rounds, max_work}, context);
+    outcome.result =
+        exchange.solve(rows, base, {options.violation_tolerance, options.max_rounds, max_work, work_to_judge}, context);
     if (outcome.result.stopped) exchange.forget();
     else add_base_reactions(energy, rows, base, outcome.result);
     return !outcome.result.stopped;
@@ -110,7 +116,10 @@ BoundedQp::Implementation::Outcome BoundedQp::Implementation::solve(const Rows& 
             : options.method == QpMethod::exchange ? max_work_of_exchange
                                                    : work_of_try;
     const auto span = context.span(0, options.method == QpMethod::exchange ? 1 : share_of_exchange, "Finding contacts");
-    if (exchange_within(tried)) return outcome;
+    const double work_to_judge = options.method == QpMethod::automatic
+                                     ? std::max(min_exchange_work, share_to_judge * interior_point_work())
+                                     : std::numeric_limits<double>::infinity();
+    if (exchange_within(tried, work_to_judge)) return outcome;
   } else {
     outcome.result.u = Eigen::VectorXd::Zero(rows.size());
     outcome.result.m = rows.centred_m();
@@ -136,7 +145,7 @@ BoundedQp::Implementation::Outcome BoundedQp::Implementation::solve(const Rows& 
   const double second_try = point.converged ? work_of_try : max_work_of_exchange;
   if (!rows.constraints().start_satisfies_rows && tried < second_try) {
     const ExchangeResult before = std::move(outcome.result);
-    if (exchange_within(second_try)) {
+    if (exchange_within(second_try, std::numeric_limits<double>::infinity())) {
       add_up(before, outcome.result);
       outcome.method = QpMethod::exchange;
       outcome.relative_gap = 0;

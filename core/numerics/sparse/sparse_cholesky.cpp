@@ -124,22 +124,22 @@ void SparseCholesky::solve(Eigen::Ref<Eigen::MatrixXd> b) const {
   const auto& I = *implementation_;
   const double* values = I.values();
   const auto& order = I.form.permutation.order;
-  constexpr Eigen::Index sides = dense::many_sides;
   std::vector<double> y;
+  const auto forward_and_backward = [&]<int Sides>() {
+    forward_solve<Sides>(I.form, values, y.data());
+    backward_solve<Sides>(I.form, values, y.data());
+  };
   for (Eigen::Index first = 0; first < b.cols();) {
-    const Eigen::Index together = b.cols() - first == 1 ? 1 : std::min(sides, b.cols() - first);
-    const Eigen::Index width = together == 1 ? 1 : sides;
+    const Eigen::Index left = b.cols() - first;
+    const Eigen::Index width = left == 1 ? 1 : left <= dense::few_sides ? dense::few_sides : dense::many_sides;
+    const Eigen::Index together = std::min(width, left);
     y.assign(static_cast<std::size_t>(I.form.n * width), 0.0);
     for (int k = 0; k < I.form.n; ++k) {
       for (Eigen::Index c = 0; c < together; ++c) y[static_cast<std::size_t>(k * width + c)] = b(order[k], first + c);
     }
-    if (width == 1) {
-      forward_solve<1>(I.form, values, y.data());
-      backward_solve<1>(I.form, values, y.data());
-    } else {
-      forward_solve<dense::many_sides>(I.form, values, y.data());
-      backward_solve<dense::many_sides>(I.form, values, y.data());
-    }
+    if (width == 1) forward_and_backward.template operator()<1>();
+    else if (width == dense::few_sides) forward_and_backward.template operator()<dense::few_sides>();
+    else forward_and_backward.template operator()<dense::many_sides>();
     for (int k = 0; k < I.form.n; ++k) {
       for (Eigen::Index c = 0; c < together; ++c) b(order[k], first + c) = y[static_cast<std::size_t>(k * width + c)];
     }

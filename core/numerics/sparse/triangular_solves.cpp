@@ -114,8 +114,10 @@ void backward_solve(const SupernodalForm& form, const double* factor, double* y)
 }
 
 template void forward_solve<1>(const SupernodalForm&, const double*, double*);
+template void forward_solve<dense::few_sides>(const SupernodalForm&, const double*, double*);
 template void forward_solve<dense::many_sides>(const SupernodalForm&, const double*, double*);
 template void backward_solve<1>(const SupernodalForm&, const double*, double*);
+template void backward_solve<dense::few_sides>(const SupernodalForm&, const double*, double*);
 template void backward_solve<dense::many_sides>(const SupernodalForm&, const double*, double*);
 
 namespace {

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "base/format.h"
@@ -20,6 +22,10 @@ struct Profile {
   void add(double at, double depth) {
     t.push_back(at);
     z.push_back(depth);
+  }
+  Profile shifted(double by) && {
+    for (double& at : t) at += by;
+    return std::move(*this);
   }
 };
 
@@ -85,10 +91,23 @@ double turn_of(const ReliefOptions& options) {
   return options.base_turn_deg + (options.base == BaseShape::stairs ? 90 : 0);
 }
 
-/// What the shape has to cover, and how wide the plate is across it; normalised.
+/// What the shape has to cover when it is not shifted, how wide the plate is across it, and by how much it is shifted;
+/// normalised.
 struct Extent {
-  double depth, reach, half_across;
+  double depth, reach, half_across, shift;
 };
+
+/// A shape that is shifted off its plate would be another one, and steps would be missing.
+double shift_of(const ReliefOptions& options, double half_across) {
+  if (options.base == BaseShape::strips) return 0;
+  const double size = options.width_mm, shift = options.base_shift_mm / size;
+  const bool stairs = options.base == BaseShape::stairs;
+  const double max_shift = stairs ? 2 * half_across / options.base_steps : half_across;
+  if (std::abs(shift) < max_shift) return shift;
+  throw Error(ErrorCode::invalid_input, "base_shift_mm",
+              std::string("The base is shifted by more than ") + (stairs ? "one step" : "half the plate") +
+                  ": shift it by less than " + with_digits(max_shift * size, 4) + " mm.");
+}
 
 Extent extent_of(const ReliefOptions& options, const ViewFrame& frame) {
   const double size = options.width_mm, depth = options.base_depth_mm / size;
@@ -96,8 +115,9 @@ Extent extent_of(const ReliefOptions& options, const ViewFrame& frame) {
   // Rays spread behind the plate's front.
   const double spread = 1 + frame.kappa * (depth + options.carve_depth_mm / size);
   const double angle = turn_of(options) * std::numbers::pi / 180;
-  return {depth, 1.01 * spread * std::hypot(half_x, half_y),
-          std::abs(std::cos(angle)) * half_x + std::abs(std::sin(angle)) * half_y};
+  const double half_across = std::abs(std::cos(angle)) * half_x + std::abs(std::sin(angle)) * half_y;
+  const double shift = shift_of(options, half_across);
+  return {depth, 1.01 * spread * std::hypot(half_x, half_y) + std::abs(shift), half_across, shift};
 }
 
 Profile stairs(const BaseBands& bands, double reach) {
@@ -133,14 +153,14 @@ std::optional<BaseBands> base_bands(const ReliefOptions& options, const ViewFram
   std::vector<double> depth, border;
   for (int k = 0; k < options.base_steps; ++k) {
     depth.push_back(extent.depth * k / (options.base_steps - 1));
-    if (k > 0) border.push_back(extent.half_across * (2.0 * k / options.base_steps - 1));
+    if (k > 0) border.push_back(extent.half_across * (2.0 * k / options.base_steps - 1) + extent.shift);
   }
   return BaseBands(depth, border, turn_of(options));
 }
 
 TriangleMesh base_shape(const ReliefOptions& options, const ViewFrame& frame) {
   const double size = options.width_mm;
-  const auto [depth, reach, half_across] = extent_of(options, frame);
+  const auto [depth, reach, half_across, shift] = extent_of(options, frame);
   const double pitch = options.base_pitch_mm ? *options.base_pitch_mm / size : 2 * half_across;
   switch (options.base) {
     case BaseShape::cylinder:
@@ -148,20 +168,20 @@ TriangleMesh base_shape(const ReliefOptions& options, const ViewFrame& frame) {
         throw Error(ErrorCode::invalid_input, "base_depth_mm",
                     "The cylinder would have to be deeper than half its width: make the base's depth less than " +
                         with_digits(std::floor(half_across * size), 4) + " mm, or the relief wider.");
-      return swept(cylinder(depth, reach, half_across), reach, turn_of(options));
+      return swept(cylinder(depth, reach, half_across).shifted(shift), reach, turn_of(options));
     case BaseShape::wave:
       if (pitch * max_waves < 2 * reach)
         throw Error(ErrorCode::invalid_input, "base_pitch_mm",
                     "The waves are too short for this width: make them at least " +
                         with_decimals(2 * reach * size / max_waves + 0.05, 1) + " mm long.");
-      return swept(wave(depth, reach, pitch), reach, turn_of(options));
+      return swept(wave(depth, reach, pitch).shifted(shift), reach, turn_of(options));
     case BaseShape::strips: {
       const BaseStrips folded = base_strips(options, frame, half_across, turn_of(options));
       const double spread = 1 + frame.kappa * *std::ranges::max_element(folded.z);
       return swept(strips(folded, reach * spread), reach * spread, turn_of(options));
     }
     case BaseShape::stairs: return swept(stairs(*base_bands(options, frame), reach), reach, turn_of(options));
-    default: return swept(groove(depth, reach, pitch), reach, turn_of(options));
+    default: return swept(groove(depth, reach, pitch).shifted(shift), reach, turn_of(options));
   }
 }
 

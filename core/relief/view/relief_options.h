@@ -106,6 +106,7 @@ struct ReliefOptions {
   double base_fold_deg = 22.5;
   BaseBend base_bend = BaseBend::bay;
   double base_turn_deg = 0;
+  double base_shift_mm = 0;
   double carve_depth_mm = 0;
   double base_mesh_x_mm = 0;
   double base_mesh_y_mm = 0;
@@ -190,6 +191,12 @@ struct ReliefOptions {
           .group("Base")
           .only_with("base", "cylinder", "wave", "groove", "stairs", "strips")
           .slider(-90, 90),
+      parameter(
+          "base_shift_mm", &ReliefOptions::base_shift_mm, "Shift of the base", unit::mm, -10000, 10000,
+          "Moves waves, groove and cylinder to the right on the plate, and stairs upwards, before they are turned; negative values the other way. So a crest or a fold comes to lie behind the part of the model that needs it.")
+          .group("Base")
+          .only_with("base", "cylinder", "wave", "groove", "stairs")
+          .slider(-60, 60),
       parameter(
           "base_mesh_x_mm", &ReliefOptions::base_mesh_x_mm, "Base to the right", unit::mm, -10000, 10000,
           "Moves a base from a file to the right on the plate, as seen from the viewpoint; negative values to the "

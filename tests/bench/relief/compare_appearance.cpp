@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How reliefs look beside their models, by method; JSON on standard output.
 //   compare_appearance MODEL... [--vertices N] [--percent LIST] [--views LIST] [--methods LIST] [--pixels F] [--runs N]
-//                      [--pictures FOLDER]
+//                      [--pictures FOLDER] [--picture-pixels F]
 // MODEL is a built-in sample, made with N vertices (20,000), or a file, seen along -z with y up, and repaired first.
 // --percent: thickness of the width (2,5,10). --views: near, far. --methods: linear, gradient [WDB07], detail_W and
 // balanced_W with hidden vertices at weight W, normals_W: normals alone in the same bounds, by the same solver with a
 // falling price on the energy that ends at 0. --pixels: size of a pixel of the comparison in those of eye_grid (1).
 // Seconds are processor time of setting up, factoring and solving, the least of N runs (1), in a process in which
-// nothing is reused. --pictures writes MODEL_VIEW_PERCENT.png: the model, then every method, under one light.
+// nothing is reused. --pictures writes MODEL_VIEW_PERCENT.png: the model, then every method, under one light; its
+// pixels are F of eye_grid's (2.5).
 #include <algorithm>
 #include <cstdio>
 #include <ctime>
@@ -35,13 +36,11 @@
 namespace {
 using namespace formwright;
 
-constexpr double picture_factor = 2.5;  // of the pictures' pixels, in those of eye_grid
-
 struct Arguments {
   std::vector<std::string> models, percents{"2", "5", "10"}, views{"near", "far"},
       methods{"linear", "gradient", "detail_1", "detail_0.01", "normals_0.01", "balanced_0.01"};
   int vertices = 20'000, runs = 1;
-  double pixels = 1;
+  double pixels = 1, picture_pixels = 2.5;
   std::string pictures;
 };
 
@@ -72,6 +71,7 @@ Arguments read_arguments(int argc, char** argv) {
     else if (word == "--views") a.views = split(value);
     else if (word == "--methods") a.methods = split(value);
     else if (word == "--pictures") a.pictures = value;
+    else if (word == "--picture-pixels") a.picture_pixels = std::stod(value);
     else throw std::runtime_error(word + " is not known");
   }
   return a;
@@ -194,7 +194,7 @@ Json compare(const Arguments& a, const Subject& subject, const std::string& view
   options.projection = view == "near" ? Projection::perspective : Projection::orthographic;
   const ReliefSolver seen(subject.mesh, options, context);
   const SeenComparison comparison(seen.frame(), seen.F(), a.pixels, context);
-  const PictureGrid small = eye_grid(seen.frame(), picture_factor);
+  const PictureGrid small = eye_grid(seen.frame(), a.picture_pixels);
   std::vector<NormalPicture> pictures{draw_normals(seen.frame(), seen.frame().P, seen.F(), small, context)};
   Json rows = Json::array();
   for (const std::string& method : a.methods) {

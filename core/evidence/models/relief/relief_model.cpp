@@ -6,19 +6,18 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "base/data/json_text.h"
-#include "base/data/number_table.h"
-#include "geometry/queries/ray_caster.h"
 
 namespace formwright {
 namespace {
 
 constexpr std::size_t min_relief_points = 30;
-constexpr double shininess = 20;     // of gloss: Blinn and Phong's exponent
-constexpr double penumbra_mm = 0.3;  // over which a shadow's edge fades
+constexpr double shininess = 20;      // of gloss: Blinn and Phong's exponent
+constexpr double usual_sigma = 0.01;  // of a brightness without one, of the brightest
+constexpr double half_pixel = 0.5;    // steps along a ray of sight
+constexpr int bisections = 30;
+constexpr double distance_of_a_far_camera_mm = 1000;  // to which viewer_offset is a distance where none is given
 
 enum Index {
-  exposure,
   ambient,
   tilt_x,
   tilt_y,
@@ -47,96 +46,87 @@ ModelParameter declared(const char* name, const char* label, const char* unit, P
   return p;
 }
 
-double bilinear(const Eigen::MatrixXd& grid, double column, double row) {
-  const double c = std::clamp(column, 0.0, static_cast<double>(grid.cols() - 1)),
-               r = std::clamp(row, 0.0, static_cast<double>(grid.rows() - 1));
-  const auto c0 = std::min(static_cast<Eigen::Index>(c), std::max<Eigen::Index>(0, grid.cols() - 2)),
-             r0 = std::min(static_cast<Eigen::Index>(r), std::max<Eigen::Index>(0, grid.rows() - 2));
-  const Eigen::Index c1 = std::min(c0 + 1, grid.cols() - 1), r1 = std::min(r0 + 1, grid.rows() - 1);
-  const double s = c - static_cast<double>(c0), t = r - static_cast<double>(r0);
-  return (1 - t) * ((1 - s) * grid(r0, c0) + s * grid(r0, c1)) + t * ((1 - s) * grid(r1, c0) + s * grid(r1, c1));
-}
-
-}  // namespace
-
-ReliefSurface ReliefSurface::of(const TriangleMesh& mesh, int pixels, Context& context) {
-  ReliefSurface surface;
-  const Vec3 lower = mesh.V.colwise().minCoeff().transpose(), upper = mesh.V.colwise().maxCoeff().transpose();
-  const Vec3 size = upper - lower;
-  if (!(size.x() > 0) || !(size.y() > 0))
-    throw Error(ErrorCode::invalid_input, "object", "The relief has no extent in x and y: z must point at the viewer.");
-  surface.pixel_mm = std::max(size.x(), size.y()) / pixels;
-  surface.lower_mm = lower.head<2>() + Vec2::Constant(0.5 * surface.pixel_mm);
-  const auto columns = std::max<Eigen::Index>(2, static_cast<Eigen::Index>(size.x() / surface.pixel_mm)),
-             rows = std::max<Eigen::Index>(2, static_cast<Eigen::Index>(size.y() / surface.pixel_mm));
-  surface.height_mm.setConstant(rows, columns, lower.z());
-  const RayCaster rays(mesh);
-  for (Eigen::Index r = 0; r < rows; ++r) {
-    context.check_cancelled();
-    for (Eigen::Index c = 0; c < columns; ++c) {
-      const Vec3 above(surface.lower_mm.x() + surface.pixel_mm * static_cast<double>(c),
-                       surface.lower_mm.y() + surface.pixel_mm * static_cast<double>(r), upper.z() + 1);
-      if (const auto hit = rays.first_hit(above, -Vec3::UnitZ(), 0, size.z() + 2))
-        surface.height_mm(r, c) = above.z() - hit->distance;
-    }
-  }
-  return surface;
-}
-
-Eigen::MatrixXd blurred(const Eigen::MatrixXd& height, double sigma_pixels) {
-  if (!(sigma_pixels > 0.05)) return height;
-  const int reach = static_cast<int>(std::ceil(4 * sigma_pixels));
-  Eigen::VectorXd kernel(2 * reach + 1);
-  for (int i = -reach; i <= reach; ++i) kernel[i + reach] = std::exp(-0.5 * i * i / (sigma_pixels * sigma_pixels));
-  kernel /= kernel.sum();
-  const auto along_rows = [&](const Eigen::MatrixXd& in) {
-    Eigen::MatrixXd out = Eigen::MatrixXd::Zero(in.rows(), in.cols());
-    for (Eigen::Index c = 0; c < in.cols(); ++c)
-      for (int i = -reach; i <= reach; ++i)
-        out.col(c) += kernel[i + reach] * in.col(std::clamp<Eigen::Index>(c + i, 0, in.cols() - 1));
-    return out;
-  };
-  return along_rows(along_rows(height).transpose()).transpose();
-}
-
-Eigen::MatrixXd lit(const ReliefSurface& surface, const Vec3& light) {
-  const Eigen::MatrixXd& z = surface.height_mm;
-  Eigen::MatrixXd result = Eigen::MatrixXd::Ones(z.rows(), z.cols());
-  const double across = light.head<2>().norm();
-  if (across < 1e-6 || light.z() <= 0) return result;
-  const Vec2 step = light.head<2>() / across;
-  const double rise = light.z() / across * surface.pixel_mm, highest = z.maxCoeff();
-  for (Eigen::Index r = 0; r < z.rows(); ++r)
-    for (Eigen::Index c = 0; c < z.cols(); ++c) {
-      double blocked = -1e9;
-      for (int k = 1;; ++k) {
-        const double ray = z(r, c) + k * rise, column = static_cast<double>(c) + k * step.x(),
-                     row = static_cast<double>(r) + k * step.y();
-        if (ray > highest + penumbra_mm || column < 0 || row < 0 || column > static_cast<double>(z.cols() - 1) ||
-            row > static_cast<double>(z.rows() - 1))
-          break;
-        blocked = std::max(blocked, bilinear(z, column, row) - ray);
-      }
-      result(r, c) = std::clamp(1 - blocked / penumbra_mm, 0.0, 1.0);
-    }
-  return result;
-}
-
-ReliefModel::ReliefModel(std::vector<PhotographedRelief> reliefs) : reliefs_(std::move(reliefs)) {
-  using enum ParameterRole;
+/// Brightness in shares of the picture's brightest point, places in shares of the relief's width and height.
+Measurement measurement_of(const PhotographedRelief& picture) {
   double brightest = 0;
-  for (const PhotographedRelief& relief : reliefs_) {
-    if (relief.points.size() < min_relief_points)
-      throw Error(ErrorCode::invalid_input, "object",
-                  relief.name + ": shading.csv has " + std::to_string(relief.points.size()) + " points; at least " +
-                      std::to_string(min_relief_points) + " are needed.");
-    for (const ShadedPoint& p : relief.points) brightest = std::max(brightest, p.brightness);
-  }
+  for (const ShadedPoint& p : picture.points) brightest = std::max(brightest, p.brightness);
   if (!(brightest > 0))
     throw Error(ErrorCode::invalid_input, "object",
-                "All brightnesses are 0: shading.csv needs linear brightnesses above 0.");
+                picture.name + ": all brightnesses are 0, but shading.csv needs linear brightnesses above 0.");
+  Measurement m;
+  m.name = picture.name;
+  const Vec2 size = picture.surface.size_mm();
+  m.extent_mm = size.maxCoeff();
+  const auto n = static_cast<Eigen::Index>(picture.points.size());
+  m.place.resize(n, 2);
+  m.measured.resize(n, 1);
+  m.sigma.resize(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const ShadedPoint& p = picture.points[static_cast<std::size_t>(i)];
+    m.place.row(i) = (p.place_mm - picture.surface.lower_mm).cwiseQuotient(size).transpose();
+    m.measured(i, 0) = p.brightness / brightest;
+    m.sigma[i] = p.sigma / brightest;
+  }
+  return m;
+}
+
+/// Where a camera at `camera_mm` (or infinitely far away in the direction `offset`) sees the surface at a place of a
+/// picture that was straightened to the plane at `plane_mm`: the first place on its ray, from above.
+Vec2 seen_place(const ReliefSurface& surface, const Vec2& heights_mm, const Vec2& place_mm, double plane_mm,
+                const Vec2& aside_mm, double distance_mm) {
+  const double across = aside_mm.norm() / distance_mm;  // for each millimetre of height
+  if (across * (heights_mm.y() - heights_mm.x()) < 1e-9 * surface.pixel_mm &&
+      across * std::abs(heights_mm.x() - plane_mm) < 1e-9 * surface.pixel_mm)
+    return place_mm;
+  const auto place = [&](double height) -> Vec2 { return place_mm + (height - plane_mm) / distance_mm * aside_mm; };
+  const auto above = [&](double height) { return height - surface.at(surface.height_mm, place(height)); };
+  const double step = std::max(half_pixel * surface.pixel_mm / std::max(across, 1e-12), 1e-6),
+               lowest = heights_mm.x() - step;
+  double high = heights_mm.y(), low = high;
+  while (low > lowest && above(low) > 0) {
+    high = low;
+    low = std::max(lowest, low - step);
+  }
+  for (int k = 0; k < bisections; ++k) {
+    const double middle = 0.5 * (low + high);
+    (above(middle) > 0 ? high : low) = middle;
+  }
+  return place(0.5 * (low + high));
+}
+
+/// The factor that brings `predicted` nearest to what was measured.
+double exposure_of(const Measurement& m, const Eigen::VectorXd& predicted) {
+  double with = 0, of_itself = 0;
+  for (Eigen::Index i = 0; i < predicted.size(); ++i) {
+    const double weight = m.sigma[i] > 0 ? 1 / (m.sigma[i] * m.sigma[i]) : 1 / (usual_sigma * usual_sigma);
+    with += weight * predicted[i] * m.measured(i, 0);
+    of_itself += weight * predicted[i] * predicted[i];
+  }
+  return of_itself > 0 && with > 0 ? with / of_itself : 1;
+}
+}  // namespace
+
+ReliefModel::ReliefModel(std::vector<PhotographedRelief> pictures) : pictures_(std::move(pictures)) {
+  using enum ParameterRole;
+  for (PhotographedRelief& picture : pictures_) {
+    points_beside_ += static_cast<int>(
+        std::erase_if(picture.points, [&](const ShadedPoint& p) { return !picture.surface.holds(p.place_mm); }));
+    if (picture.points.size() < min_relief_points)
+      throw Error(ErrorCode::invalid_input, "object",
+                  picture.name + ": shading.csv has " + std::to_string(picture.points.size()) +
+                      " points on the relief; at least " + std::to_string(min_relief_points) + " are needed.");
+    const Vec2 heights = picture.surface.height_range_mm();
+    const double camera = picture.setup.camera_height_mm,
+                 above = 0.5 * heights.sum() + camera -
+                         std::max(heights.y(), picture.setup.straightened_at_mm.value_or(heights.y()));
+    if (camera > 0 && !(above > 0))
+      throw Error(ErrorCode::invalid_input, "object",
+                  picture.name +
+                      ": the camera is not above the relief and the plane that the picture shows true: correct " +
+                      "“camera_height_mm” or “straightened_at_mm” in setup.json.");
+    measurements_.push_back(measurement_of(picture));
+  }
   parameters_ = {
-      declared("exposure", "Exposure", "", base, brightest, 1e-3 * brightest, 1e2 * brightest, true, 0.7, 0.1),
       declared("ambient", "Ambient light", "", base, 0.1, 0, 0.9, false, 0.15, 0.05),
       declared("light_tilt_x_deg", "Light turned in x", "°", effect, 0, -60, 60, false, 10, 3),
       declared("light_tilt_y_deg", "Light turned in y", "°", effect, 0, -60, 60, false, 10, 3),
@@ -197,132 +187,61 @@ ReliefModel::ReliefModel(std::vector<PhotographedRelief> reliefs) : reliefs_(std
               "mm",
               0,
               FaultOf::measurement}};
-  for (const PhotographedRelief& relief : reliefs_) {
-    Measurement m;
-    m.name = relief.name;
-    const ReliefSurface& s = relief.surface;
-    const double width = s.pixel_mm * static_cast<double>(s.height_mm.cols()),
-                 height = s.pixel_mm * static_cast<double>(s.height_mm.rows());
-    m.extent_mm = std::max(width, height);
-    const auto n = static_cast<Eigen::Index>(relief.points.size());
-    m.place.resize(n, 2);
-    m.measured.resize(n, 1);
-    m.sigma.resize(n);
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const ShadedPoint& p = relief.points[static_cast<std::size_t>(i)];
-      m.place.row(i) << (p.place_mm.x() - s.lower_mm.x()) / width, (p.place_mm.y() - s.lower_mm.y()) / height;
-      m.measured(i, 0) = p.brightness / brightest;
-      m.sigma[i] = p.sigma / brightest;
-    }
-    measurements_.push_back(std::move(m));
-  }
-  // Brightness counts in shares of the brightest point from here on.
-  parameters_[exposure].nominal = 1;
-  parameters_[exposure].low = 1e-3;
-  parameters_[exposure].high = 1e2;
 }
 
 Eigen::MatrixXd ReliefModel::predict(int object, const Eigen::VectorXd& u, const Context& context) const {
-  const PhotographedRelief& relief = reliefs_[static_cast<std::size_t>(object)];
+  const PhotographedRelief& picture = pictures_[static_cast<std::size_t>(object)];
   const auto value = [&](Index i) { return parameters_[static_cast<std::size_t>(i)].value(u[i]); };
-  ReliefSurface s = relief.surface;
-  s.height_mm = blurred(s.height_mm, value(printer_blur_mm) / s.pixel_mm) * (1 - value(depth_shrinkage));
+  const ReliefSurface s = picture.surface.made_with(value(printer_blur_mm), value(depth_shrinkage));
   context.check_cancelled();
 
   constexpr double degree = 0.017453292519943295;
   const Vec3 towards =
       (Eigen::AngleAxisd(value(tilt_y) * degree, Vec3::UnitX()) *
-       Eigen::AngleAxisd(value(tilt_x) * degree, Vec3::UnitY()) * relief.setup.light_direction.normalized())
+       Eigen::AngleAxisd(value(tilt_x) * degree, Vec3::UnitY()) * picture.setup.light_direction.normalized())
           .normalized();
-  const Eigen::MatrixXd& z = s.height_mm;
-  const Vec3 middle(s.lower_mm.x() + 0.5 * s.pixel_mm * static_cast<double>(z.cols()),
-                    s.lower_mm.y() + 0.5 * s.pixel_mm * static_cast<double>(z.rows()),
-                    0.5 * (z.maxCoeff() + z.minCoeff()));
+  const Vec2 heights = s.height_range_mm(), centre = s.lower_mm + 0.5 * (s.size_mm() - Vec2::Constant(s.pixel_mm));
+  const Vec3 middle(centre.x(), centre.y(), 0.5 * heights.sum());
   const double nearness_per_mm =
-      (relief.setup.light_distance_mm > 0 ? 1 / relief.setup.light_distance_mm : 0) + 1e-3 * value(light_nearness);
-  const double camera_mm = relief.setup.camera_height_mm;
-  const Vec3 viewer = middle + Vec3(value(viewer_x), value(viewer_y), camera_mm > 0 ? camera_mm : 1000);
+      (picture.setup.light_distance_mm > 0 ? 1 / picture.setup.light_distance_mm : 0) + 1e-3 * value(light_nearness);
+  const double camera_mm = picture.setup.camera_height_mm;
+  const Vec2 offset(value(viewer_x), value(viewer_y));
+  const Vec3 far_viewer = Vec3(offset.x(), offset.y(), distance_of_a_far_camera_mm).normalized(),
+             viewer = middle + Vec3(offset.x(), offset.y(), camera_mm);
   const Eigen::MatrixXd reached = value(cast_shadow) > 0 ? lit(s, towards) : Eigen::MatrixXd();
   const double surroundings = value(ambient);
 
-  Eigen::MatrixXd brightness(z.rows(), z.cols());
-  for (Eigen::Index r = 0; r < z.rows(); ++r)
-    for (Eigen::Index c = 0; c < z.cols(); ++c) {
-      const Eigen::Index left = std::max<Eigen::Index>(0, c - 1), right = std::min(z.cols() - 1, c + 1),
-                         below = std::max<Eigen::Index>(0, r - 1), above = std::min(z.rows() - 1, r + 1);
-      const Vec3 normal = Vec3(-(z(r, right) - z(r, left)) / (s.pixel_mm * static_cast<double>(right - left)),
-                               -(z(above, c) - z(below, c)) / (s.pixel_mm * static_cast<double>(above - below)), 1)
-                              .normalized();
+  Eigen::MatrixXd brightness(s.height_mm.rows(), s.height_mm.cols());
+  for (Eigen::Index r = 0; r < brightness.rows(); ++r)
+    for (Eigen::Index c = 0; c < brightness.cols(); ++c) {
+      const Vec3 normal = s.normal(r, c);
       const Vec3 place(s.lower_mm.x() + s.pixel_mm * static_cast<double>(c),
-                       s.lower_mm.y() + s.pixel_mm * static_cast<double>(r), z(r, c));
+                       s.lower_mm.y() + s.pixel_mm * static_cast<double>(r), s.height_mm(r, c));
       // With nearness e = 1 / distance the light is at l / e: (l - e p) has its direction, and its length the fall-off,
       // down to e = 0.
       const Vec3 to_light = towards - nearness_per_mm * (place - middle);
       const double distance = to_light.norm(), facing = std::max(0.0, normal.dot(to_light) / distance),
                    falloff = 1 / (distance * distance);
-      const Vec3 to_viewer =
-          camera_mm > 0 || value(viewer_x) != 0 || value(viewer_y) != 0 ? (viewer - place).normalized() : Vec3::UnitZ();
+      const Vec3 to_viewer = camera_mm > 0 ? Vec3((viewer - place).normalized()) : far_viewer;
       const Vec3 half = (to_light / distance + to_viewer).normalized();
       const double shine = value(gloss) * (facing > 0 ? std::pow(std::max(0.0, normal.dot(half)), shininess) : 0);
       const double direct =
           (facing + shine) * falloff * (reached.size() > 0 ? 1 - value(cast_shadow) * (1 - reached(r, c)) : 1);
-      brightness(r, c) = value(exposure) * (surroundings + (1 - surroundings) * direct);
+      brightness(r, c) = surroundings + (1 - surroundings) * direct;
     }
 
-  Eigen::MatrixXd result(static_cast<Eigen::Index>(relief.points.size()), 1);
-  for (Eigen::Index i = 0; i < result.rows(); ++i) {
-    // The picture was rectified for a camera over the middle: one beside it sees what stands high elsewhere.
-    Vec2 at = relief.points[static_cast<std::size_t>(i)].place_mm;
-    const Vec2 offset(value(viewer_x), value(viewer_y));
-    for (int k = 0; k < 3 && offset.squaredNorm() > 0; ++k) {
-      const double height =
-          bilinear(z, (at.x() - s.lower_mm.x()) / s.pixel_mm, (at.y() - s.lower_mm.y()) / s.pixel_mm) - middle.z();
-      at = relief.points[static_cast<std::size_t>(i)].place_mm + height / (viewer.z() - middle.z()) * offset;
-    }
-    result(i, 0) = bilinear(brightness, (at.x() - s.lower_mm.x()) / s.pixel_mm, (at.y() - s.lower_mm.y()) / s.pixel_mm);
+  // Markers on the plane keep their places in the picture wherever the camera stands; what is higher or lower moves.
+  const double plane_mm = picture.setup.straightened_at_mm.value_or(middle.z());
+  Eigen::VectorXd result(static_cast<Eigen::Index>(picture.points.size()));
+  for (Eigen::Index i = 0; i < result.size(); ++i) {
+    const Vec2& at = picture.points[static_cast<std::size_t>(i)].place_mm;
+    const Vec2 aside = camera_mm > 0 ? Vec2(viewer.head<2>() - at) : offset;
+    const double above_plane_mm = camera_mm > 0 ? viewer.z() - plane_mm : distance_of_a_far_camera_mm;
+    result[i] = s.at(brightness, seen_place(s, heights, at, plane_mm, aside, above_plane_mm));
   }
+  result *= exposure_of(measurements_[static_cast<std::size_t>(object)], result);
   if (!result.allFinite()) throw Error(ErrorCode::could_not_solve, "", "The shading has no finite value there.");
   return result;
-}
-
-std::vector<ShadedPoint> read_shaded_points(ByteView csv) {
-  std::vector<ShadedPoint> points;
-  for (const std::vector<double>& row :
-       read_number_table(csv, "shading.csv", "object", {{"x_mm"}, {"y_mm"}, {"brightness"}, {"sigma", false}})) {
-    if (row[2] < 0 || row[3] < 0)
-      throw Error(
-          ErrorCode::invalid_input, "object",
-          "shading.csv, point " + std::to_string(points.size() + 1) + ": brightness and sigma must not be negative.");
-    points.push_back({Vec2(row[0], row[1]), row[2], row[3]});
-  }
-  return points;
-}
-
-ShadingSetup read_shading_setup(ByteView bytes) {
-  const auto refuse = [](const std::string& sentence) {
-    throw Error(ErrorCode::invalid_input, "object", "setup.json: " + sentence);
-  };
-  const Json json = parse_json_text(as_text(bytes));
-  if (!json.is_object()) refuse("this is not a JSON object; see docs/evidence.md for one.");
-  ShadingSetup setup;
-  const auto length = [&](const char* key, double& value) {
-    if (!json.contains(key)) return;
-    if (!json[key].is_number() || !(json[key].get<double>() >= 0))
-      refuse("“" + std::string(key) + "” must be a number of millimetres, 0 or more.");
-    value = json[key].get<double>();
-  };
-  length("light_distance_mm", setup.light_distance_mm);
-  length("camera_height_mm", setup.camera_height_mm);
-  if (!json.contains("light_direction"))
-    refuse("“light_direction” is missing: three numbers, from the relief towards the light, z towards the viewer.");
-  const Json& direction = json["light_direction"];
-  if (!direction.is_array() || direction.size() != 3 ||
-      !std::all_of(direction.begin(), direction.end(), [](const Json& v) { return v.is_number(); }))
-    refuse("“light_direction” must be three numbers, such as [-1, 1, 1].");
-  for (int k = 0; k < 3; ++k) setup.light_direction[k] = direction[static_cast<std::size_t>(k)].get<double>();
-  if (!(setup.light_direction.z() > 0) || !setup.light_direction.allFinite())
-    refuse("“light_direction” must point towards the viewer's side: its third number above 0.");
-  return setup;
 }
 
 }  // namespace formwright

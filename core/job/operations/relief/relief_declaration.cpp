@@ -4,17 +4,21 @@
 namespace formwright {
 
 std::vector<OutputInfo> relief_outputs() {
-  return {{"relief.ply", "application/x-ply", "PLY",
-           "The relief as a mesh, with depth, depth limits, visibility and shading difference at every vertex.", true},
-          {"relief.stl", "model/stl", "STL",
-           "The relief with its plate as a watertight solid, lying on its back, for 3D printing.", true},
-          {"relief.glb", "model/gltf-binary", "GLB", "The relief on its plate, for viewing.", true},
-          {"heightmap.png", "image/png", "Height map",
-           "Height map with 16-bit grey levels; white is the full thickness. Its scale is in the report.", true},
-          {"base.ply", "application/x-ply", "Base",
-           "The base in the same axes as relief.ply, to draw behind it; a flat plate where the base is flat.", false},
-          {"relief.3mf", "model/3mf", "3MF", "The solid for a slicer.", false},
-          {"relief.obj", "model/obj", "OBJ", "The solid for a 3D modelling program.", false}};
+  return {
+      {"relief.ply", "application/x-ply", "PLY",
+       "The relief as a mesh, with depth, depth limits, visibility and shading difference at every vertex.", true},
+      {"relief.stl", "model/stl", "STL",
+       "The relief with its plate as a watertight solid, lying on its back, for 3D printing.", true},
+      {"relief.glb", "model/gltf-binary", "GLB", "The relief on its plate, for viewing.", true},
+      {"heightmap.png", "image/png", "Height map",
+       "Height map with 16-bit grey levels; white is the full thickness. Its scale is in the report.", true},
+      {"base.ply", "application/x-ply", "Base",
+       "The base in the same axes as relief.ply, to draw behind it; a flat plate where the base is flat.", false},
+      {"base.obj", "model/obj", "Base as it lies",
+       "The base without the relief, lying as relief.obj does. A diagnosis of the finished relief counts depth from it.",
+       false},
+      {"relief.3mf", "model/3mf", "3MF", "The solid for a slicer.", false},
+      {"relief.obj", "model/obj", "OBJ", "The solid for a 3D modelling program.", false}};
 }
 
 std::vector<ReportField> relief_report_fields() {

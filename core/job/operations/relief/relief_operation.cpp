@@ -234,6 +234,15 @@ OperationResult run_relief(const OperationCall& call, const ReliefOptions& optio
       add("base.ply", write_model(drawn, MeshFormat::ply, context));
     }
   }
+  if (call.wants("base.obj")) {
+    const Positions no_vertices(0, 3);
+    const Triangles no_faces(0, 3);
+    const HeightMap bare =
+        make_height_map({no_vertices, no_faces}, options.width_mm, plate, options.pixel_mm, space, context);
+    Model base;
+    base.mesh = make_solid(bare, options.plate_mm, solid_tolerance_share * options.thickness_mm, context);
+    add("base.obj", write_model(base, MeshFormat::obj, context));
+  }
   const bool wants_solid = call.wants("relief.stl") || call.wants("relief.3mf") || call.wants("relief.obj");
   const bool thick = options.solid == SolidKind::thick;
   HeightMap map;

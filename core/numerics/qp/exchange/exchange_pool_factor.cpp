@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/index.h"
+#include "numerics/dense/grown_cholesky.h"
 
 namespace formwright::bounded_qp_detail {
 
@@ -91,19 +92,12 @@ bool PoolFactor::grow(int from) {
     gram_(order_[index(b)], std::span(order_).subspan(index(first)), &L_(first, b));
   }
   for (Eigen::Index a = from; a < k; ++a) L_(a, a) += proximal_ * row_diagonal_[order_[static_cast<std::size_t>(a)]];
-  auto corner = L_.block(from, from, fresh, fresh);
-  if (from > 0) {
-    auto below = L_.block(from, 0, fresh, from);
-    L_.topLeftCorner(from, from).triangularView<Eigen::Lower>().transpose().solveInPlace<Eigen::OnTheRight>(below);
-    corner.selfadjointView<Eigen::Lower>().rankUpdate(below, -1);
-  }
-  const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> llt(corner);
-  if (llt.info() != Eigen::Success) return false;
+  if (!dense::grow_cholesky(L_, from, k)) return false;
   for (Eigen::Index a = from; a < k; ++a) V_.row(a) = B_.row(order_[static_cast<std::size_t>(a)]);
   if (B_.cols() > 0) {
     auto below = V_.block(from, 0, fresh, B_.cols());
     if (from > 0) below.noalias() -= L_.block(from, 0, fresh, from) * V_.topRows(from);
-    corner.triangularView<Eigen::Lower>().solveInPlace(below);
+    L_.block(from, from, fresh, fresh).triangularView<Eigen::Lower>().solveInPlace(below);
   }
   return true;
 }

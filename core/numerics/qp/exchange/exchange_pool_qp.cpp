@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/index.h"
+#include "base/parallel.h"
 
 namespace formwright::bounded_qp_detail {
 
@@ -26,6 +27,7 @@ constexpr double cancellation_to_refine = 1e5;
 constexpr int proximal_rounds = 60;
 constexpr double contradiction = 1e-9;  // of the size of the rows' terms
 constexpr int block_rounds_without_gain = 4;
+constexpr std::size_t slacks_per_chunk = 512;
 constexpr double slack_work = 5;  // times the seconds of a multiplication in a product of matrices
 }  // namespace
 
@@ -61,8 +63,13 @@ void PoolQp::set_problem(Eigen::Ref<const Eigen::MatrixXd> gram, PoolProblem pro
     row_diagonal_[a] = gram_(p_.column[index(a)], p_.column[index(a)]);
     for (int j = 0; j < d; ++j) row_diagonal_[a] += augment_[j] * p_.B(a, j) * p_.B(a, j);
   }
-  if (grown) factor_.add_rows(k - rows_before);
-  else factor_.restart(k, proximal_row);
+  if (grown) {
+    factor_.add_rows(k - rows_before);
+  } else {
+    factor_.restart(k, proximal_row);
+    solved_y_.resize(0);
+    block_pivoting_helps_ = true;
+  }
 }
 
 void PoolQp::gram(int b, std::span<const int> rows, double* out) const {
@@ -116,8 +123,22 @@ double PoolQp::noise(const Eigen::VectorXd& s) const {
 Eigen::VectorXd PoolQp::slack() const {
   Eigen::VectorXd by_column = Eigen::VectorXd::Zero(gram_.rows());
   for (int a = 0; a < p_.rows(); ++a) by_column[p_.column[index(a)]] += p_.sign[index(a)] * y_[a];
-  work_ += slack_work * static_cast<double>(gram_.size());
-  const Eigen::VectorXd response = gram_ * by_column;
+  std::vector<Eigen::Index> acting;
+  for (Eigen::Index c = 0; c < by_column.size(); ++c) {
+    if (by_column[c] != 0) acting.push_back(c);
+  }
+  work_ += slack_work * static_cast<double>(gram_.rows()) * static_cast<double>(acting.size());
+  Eigen::VectorXd response = Eigen::VectorXd::Zero(gram_.rows());
+  parallel_for(static_cast<std::size_t>(gram_.rows()), slacks_per_chunk, [&](std::size_t begin, std::size_t end) {
+    const auto first = static_cast<Eigen::Index>(begin), count = static_cast<Eigen::Index>(end - begin);
+    auto part = response.segment(first, count);
+    const auto column = [&](std::size_t k) {
+      return gram_.col(acting[k]).segment(first, count) * by_column[acting[k]];
+    };
+    std::size_t k = 0;
+    for (; k + 4 <= acting.size(); k += 4) part += (column(k) + column(k + 1)) + (column(k + 2) + column(k + 3));
+    for (; k < acting.size(); ++k) part += column(k);
+  });
   Eigen::VectorXd s = p_.B * w_ - p_.d;
   for (int a = 0; a < p_.rows(); ++a) s[a] += p_.sign[index(a)] * response[p_.column[index(a)]];
   return s;
@@ -151,60 +172,6 @@ bool PoolQp::block_pivoting(double tolerance, Context& context) {
   }
 }
 
-// How far from `now` >= 0 towards `goal` one may go before turning negative, 1 if `goal` can be reached.
-static double reach(double now, double goal) { return goal > 0 ? 1.0 : now > 0 ? now / (now - goal) : 0.0; }
-
-// Monotone: every pass raises the dual objective, so that no active set comes back. Once round-off in the objective
-// is all that passes change, the rest is round-off in the slacks too. Begins with those rows that push now.
-void PoolQp::lawson_hanson(double tolerance, Context& context) {
-  const int k = p_.rows();
-  std::vector<char> active = p_.equality, aside(index(k), 0);
-  Eigen::VectorXd y = y_;
-  for (int a = 0; a < k; ++a) {
-    if (p_.equality[index(a)]) continue;
-    y[a] = std::max(y[a], 0.0);
-    active[index(a)] = y[a] > 0;
-  }
-  int entered = -1, idle = 0;
-  double best = -std::numeric_limits<double>::infinity();
-  for (;;) {
-    for (;;) {
-      context.check_cancelled();
-      if (work() > max_work_) return;
-      solve_active(active);
-      double step = 1;
-      for (int a = 0; a < k; ++a) {
-        if (active[index(a)] && !p_.equality[index(a)]) step = std::min(step, reach(y[a], y_[a]));
-      }
-      if (step >= 1) break;
-      for (int a = 0; a < k; ++a) {
-        if (!active[index(a)]) continue;
-        if (!p_.equality[index(a)] && reach(y[a], y_[a]) <= step) {
-          active[index(a)] = 0;
-          y[a] = 0;
-        } else {
-          y[a] += step * (y_[a] - y[a]);
-        }
-      }
-    }
-    y = y_;
-    if (entered >= 0 && !active[index(entered)])
-      aside[index(entered)] = 1;  // round-off pushed it in, round-off pushed it out
-    const Eigen::VectorXd s = slack();
-    const double value = y.dot(p_.d - 0.5 * (s + p_.d - p_.B * w_)) - 0.5 * w_.dot(p_.P * w_);
-    idle = value > best + 1e-13 * std::abs(best) ? 0 : idle + 1;
-    best = std::max(best, value);
-    if (idle > k) return;
-    const double allowed = std::max(tolerance, noise(s));
-    entered = -1;
-    for (int a = 0; a < k; ++a) {
-      if (!active[index(a)] && !aside[index(a)] && s[a] < -allowed && (entered < 0 || s[a] < s[entered])) entered = a;
-    }
-    if (entered < 0) return;
-    active[index(entered)] = 1;
-  }
-}
-
 PoolSolution PoolQp::solve(const std::vector<char>& start, const Eigen::VectorXd& w, double tolerance, double max_work,
                            Context& context) {
   max_work_ = max_work;
@@ -221,7 +188,14 @@ PoolSolution PoolQp::solve(const std::vector<char>& start, const Eigen::VectorXd
   double residual_before = std::numeric_limits<double>::infinity();
   int stalled = 0;
   for (int round = 0; round < proximal_rounds; ++round) {
-    if (!block_pivoting(tolerance, context)) lawson_hanson(tolerance, context);
+    // Where blocks of rows went in and out without an end, those of more rows would, too.
+    if (round > 0 || block_pivoting_helps_) {
+      const bool settled = block_pivoting(tolerance, context);
+      if (!settled) monotone(tolerance, context);
+      block_pivoting_helps_ = block_pivoting_helps_ && settled;
+    } else {
+      monotone(tolerance, context);
+    }
     result.stopped = work() > max_work_;
     if (result.stopped) break;
     result.residual = 0;
@@ -254,6 +228,7 @@ PoolSolution PoolQp::solve(const std::vector<char>& start, const Eigen::VectorXd
   for (int a = 0; a < k; ++a) {
     if (!p_.equality[index(a)]) result.y[a] = std::max(result.y[a], 0.0);
   }
+  if (!result.stopped) solved_y_ = result.y;
   result.w = w_;
   result.push = row_diagonal_.cwiseProduct(y_);
   result.active = active_;

@@ -69,7 +69,15 @@ class PoolQp {
   double noise(const Eigen::VectorXd& s) const;
   Eigen::VectorXd slack() const;
   bool block_pivoting(double tolerance, Context& context);
-  void lawson_hanson(double tolerance, Context& context);
+  void monotone(double tolerance, Context& context);
+  /// Multipliers that satisfy the dual's conditions, and the rows that may push.
+  struct Feasible {
+    Eigen::VectorXd y;
+    std::vector<char> active;
+  };
+  void without_pulling(Feasible& at, Context& context);
+  void descend(Feasible& at, Context& context);
+  double objective(const Eigen::VectorXd& s) const;
 
   using Gram = Eigen::Map<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
   Gram gram_{nullptr, 0, 0, Eigen::OuterStride<>(0)};
@@ -82,6 +90,9 @@ class PoolQp {
   std::vector<char> active_;
   PoolFactor factor_;
   Eigen::VectorXd y_, w_;
+  Eigen::VectorXd solved_y_;  // of the solve before, none at first
+  bool block_pivoting_helps_ = true;
+  std::size_t batch_ = 16;  // rows that enter in the next monotone pass
   int pivots_ = 0;
   mutable double work_ = 0;
   double max_work_ = 0;

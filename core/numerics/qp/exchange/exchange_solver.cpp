@@ -18,7 +18,8 @@ namespace {
 constexpr double target_violation = 1e-3;  // of the tolerance: what rounds strive for
 // Many rows that are new at once tell the pool's pivoting too little about which of them will hold.
 constexpr int min_batch = 300, batch_part = 4;
-constexpr int refinements = 3;             // at most, per round
+constexpr int max_refinements = 3;         // at most, per round
+constexpr double spreading = 1.01;         // times the rows that were missing a round before
 constexpr double force_tolerance = 1e-10;  // on Q u - forces, relative: above it a refinement is tried
 std::size_t hash_of(const InequalityRow& row) {
   std::size_t h = row.index.size();
@@ -316,6 +317,7 @@ ExchangeResult ExchangeSolver::run(const Rows& rows, const std::vector<RowKey>& 
   bool grown = false;
   Rows::Violations violations;
   std::optional<Convergence> convergence;
+  double missing_before = std::numeric_limits<double>::infinity();  // rows worth adding after a round
   for (;; ++result.rounds) {
     const bool at_rest = result.rounds == 0 && pool_.empty() && base.empty();  // u = 0 is optimal for no constraints
     if (!at_rest) {
@@ -350,7 +352,7 @@ ExchangeResult ExchangeSolver::run(const Rows& rows, const std::vector<RowKey>& 
       rows.evaluate(result.u, result.m, violations);
       keys = rows.worth_adding(violations, target);
       std::erase_if(keys, [&](RowKey key) { return std::find(pool_.begin(), pool_.end(), key) != pool_.end(); });
-      if (at_rest || pass == refinements) break;
+      if (at_rest || pass == max_refinements) break;
       // Round-off matters once nothing else is left to improve.
       double held = 0, left = 0;
       for (std::size_t k = 0; k < pool_.size(); ++k) {
@@ -372,6 +374,12 @@ ExchangeResult ExchangeSolver::run(const Rows& rows, const std::vector<RowKey>& 
       break;
     }
     const int max_new = std::max(min_batch, result.history.back().active / batch_part);
+    const auto missing = static_cast<double>(keys.size());
+    if (result.work > settings.work_to_judge && missing > max_new && missing > spreading * missing_before) {
+      result.stopped = true;
+      break;
+    }
+    missing_before = missing;
     if (static_cast<int>(keys.size()) > max_new) keys.resize(index(max_new));  // the worst first
     add_to_pool(rows, keys, context);
     result.seconds.columns += watch.lap();

@@ -20,6 +20,8 @@ struct ExchangeSettings {
   double violation_tolerance = 0;                             // to accept
   int max_rounds = 200;                                       // then: stop, with `stopped`
   double max_work = std::numeric_limits<double>::infinity();  // multiplications, about: stop, with `stopped`
+  /// From here on, stop as well once more rows are missing than join in a round, and more than a round before.
+  double work_to_judge = std::numeric_limits<double>::infinity();
 };
 
 struct ExchangeResult {

@@ -14,7 +14,7 @@ namespace formwright::bounded_qp_detail {
 
 namespace {
 constexpr double boundary_part = 0.9995;
-constexpr double start_slack = 0.01;  // of the distance between the bounds
+constexpr double start_slack = 0.05;  // of the distance between the bounds
 constexpr double balance_tolerance = 1e-9;
 constexpr double zero_energy = 1e-18;  // of the stiffness times the square of the lengths
 constexpr double min_energy = 1e-12;   // of the same, where even the start has none

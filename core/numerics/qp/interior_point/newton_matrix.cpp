@@ -106,11 +106,6 @@ void NewtonMatrix::factorize(const Rows& rows, const Eigen::VectorXd& diagonal, 
   factor_.factorize(matrix_, context);
 }
 
-void NewtonMatrix::solve(Eigen::Ref<Eigen::MatrixXd> b) const {
-  // Columns solved together come eight at a time; a few cost less one by one.
-  constexpr Eigen::Index few_columns = 3;
-  if (b.cols() > few_columns) return factor_.solve(b);
-  for (Eigen::Index c = 0; c < b.cols(); ++c) factor_.solve(b.col(c));
-}
+void NewtonMatrix::solve(Eigen::Ref<Eigen::MatrixXd> b) const { factor_.solve(b); }
 
 }  // namespace formwright::bounded_qp_detail

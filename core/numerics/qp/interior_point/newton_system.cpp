@@ -129,19 +129,28 @@ void NewtonSystem::factorize(const Springs& springs, Context& context) {
     E(groups_, groups_) -= proximal_part / std::max(energy_.absolute_sum(), std::numeric_limits<double>::min());
   for (const RowKey key : held_bounds_) border_.row(key.index).setZero();
   matrix_.factorize(rows_, diagonal, springs.order, held_, context);
-  border_solved_ = border_;
-  if (borders > 0) {
-    matrix_.solve(border_solved_);
-    E -= border_.transpose() * border_solved_;
-    schur_.compute(0.5 * (E + E.transpose()));
-  }
+  border_energy_ = E;
+  border_solved_.resize(0, 0);
 }
 
-NewtonSystem::Step NewtonSystem::solve_once(const Eigen::VectorXd& a, const Eigen::VectorXd& b, double c) const {
+// x = H^-1 x. A solve waits for the memory of the factor: the border's columns go with the first right-hand side.
+void NewtonSystem::solve_with_border(Eigen::VectorXd& x) {
+  const Eigen::Index borders = border_.cols();
+  if (borders == 0 || border_solved_.cols() == borders) return matrix_.solve(x);
+  Eigen::MatrixXd together(n_, borders + 1);
+  together << border_, x;
+  matrix_.solve(together);
+  border_solved_ = together.leftCols(borders);
+  x = together.col(borders);
+  const Eigen::MatrixXd schur = border_energy_ - border_.transpose() * border_solved_;
+  schur_.compute(0.5 * (schur + schur.transpose()));
+}
+
+NewtonSystem::Step NewtonSystem::solve_once(const Eigen::VectorXd& a, const Eigen::VectorXd& b, double c) {
   Step step;
   step.u = a;
   for (const RowKey key : held_bounds_) step.u[key.index] = 0;
-  matrix_.solve(step.u);
+  solve_with_border(step.u);
   const Eigen::Index borders = border_.cols();
   Eigen::VectorXd rhs(borders);
   rhs.head(groups_) = b;
@@ -188,8 +197,7 @@ void NewtonSystem::subtract_product(const Step& step, Eigen::VectorXd& a, Eigen:
   }
 }
 
-NewtonSystem::Step NewtonSystem::solve(const Eigen::VectorXd& a, const Eigen::VectorXd& b, double c,
-                                       int refinements) const {
+NewtonSystem::Step NewtonSystem::solve(const Eigen::VectorXd& a, const Eigen::VectorXd& b, double c, int refinements) {
   Step step = solve_once(a, b, c);
   for (int k = 0; k < refinements; ++k) {
     Eigen::VectorXd a_left = a, b_left = b;

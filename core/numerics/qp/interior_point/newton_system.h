@@ -45,11 +45,12 @@ class NewtonSystem {
     double gauge_force = 0;
   };
   /// `refinements`: steps of iterative refinement. A fourth-order energy on a poor mesh costs eight digits.
-  Step solve(const Eigen::VectorXd& a, const Eigen::VectorXd& b, double c, int refinements) const;
+  Step solve(const Eigen::VectorXd& a, const Eigen::VectorXd& b, double c, int refinements);
 
  private:
   Eigen::VectorXd pins_of_loose_components(const Springs& springs) const;
-  Step solve_once(const Eigen::VectorXd& a, const Eigen::VectorXd& b, double c) const;
+  Step solve_once(const Eigen::VectorXd& a, const Eigen::VectorXd& b, double c);
+  void solve_with_border(Eigen::VectorXd& x);
   void subtract_product(const Step& step, Eigen::VectorXd& a, Eigen::VectorXd& b, double& c) const;
 
   const Energy& energy_;
@@ -61,7 +62,9 @@ class NewtonSystem {
   std::vector<RowKey> held_bounds_;
   Eigen::MatrixXd held_slope_;  // n x groups: du/dm of held unknowns
   Springs springs_;
-  Eigen::MatrixXd border_, border_solved_;  // n x (groups + gauge): C, H^-1 C
+  Eigen::MatrixXd border_;         // n x (groups + gauge): C
+  Eigen::MatrixXd border_solved_;  // H^-1 C, or empty until the first solve
+  Eigen::MatrixXd border_energy_;  // (groups + gauge)^2: the system's own entries for m and the gauge
   Eigen::PartialPivLU<Eigen::MatrixXd> schur_;
 };
 

@@ -12,6 +12,7 @@ import { figure } from '../../shared/session/report';
 import { originalData, scaled } from '../../shared/panels/shaded_mesh';
 import { ForestButton } from './forest/forest_button';
 import { BaseMover } from './base/base_mover';
+import { ShapeMover } from './base/shape_mover';
 import { GroupMover } from './group/group_mover';
 import type { GripElements } from './handles/grips';
 import { Handles } from './handles/handles';
@@ -69,6 +70,8 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
   const grips = useMemo((): GripElements => ({}), []);
   const baseMover = useMemo(() => new BaseMover(session), [session]);
   const baseGrips = useMemo((): GripElements => ({}), []);
+  const shapeMover = useMemo(() => new ShapeMover(session), [session]);
+  const shapeGrips = useMemo((): GripElements => ({}), []);
   /** The view says itself why it cannot draw; what belongs to a picture goes away. */
   const drawing = useSignal(true);
   const isNarrow = useSignal(narrow());
@@ -95,6 +98,7 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
       onFrame: () => {
         mover.placeHandles(viewport, grips, areModelsShown(session));
         baseMover.placeHandles(viewport, baseGrips, isBaseShown(session));
+        shapeMover.placeHandles(viewport, shapeGrips, isBaseShown(session));
       },
     });
     const lightBall = new LightBall(light.value, (chosen) => {
@@ -113,9 +117,12 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
         requestAnimationFrame(() => mover.placeHandles(viewport, grips, there));
       }),
       effect(() => {
-        void [baseMover.place.value, session.shown.value];
+        void [baseMover.place.value, shapeMover.place.value, session.shown.value];
         const there = isBaseShown(session);
-        requestAnimationFrame(() => baseMover.placeHandles(viewport, baseGrips, there));
+        requestAnimationFrame(() => {
+          baseMover.placeHandles(viewport, baseGrips, there);
+          shapeMover.placeHandles(viewport, shapeGrips, there);
+        });
       }),
       effect(() => {
         const painting = session.paint.open.value;
@@ -185,8 +192,11 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
       {areModelsShown(session) && drawing.value ? (
         <Handles mover={mover} viewport={() => made.value} elements={grips} />
       ) : null}
-      {isBaseShown(session) && drawing.value ? (
+      {isBaseShown(session) && drawing.value && baseMover.place.value ? (
         <Handles mover={baseMover} viewport={() => made.value} elements={baseGrips} />
+      ) : null}
+      {isBaseShown(session) && drawing.value && shapeMover.place.value ? (
+        <Handles mover={shapeMover} viewport={() => made.value} elements={shapeGrips} />
       ) : null}
       <div ref={foot} class="float bottom-left foot">
         {mode.value === 'error' && shown && !session.paint.open.value ? (
@@ -219,9 +229,9 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
 const areModelsShown = ({ group, paint }: ReliefSession): boolean =>
   group.models.value !== null && mode.value === 'original' && !paint.open.value;
 
-/** The relief on a base from a file, to be moved. */
-const isBaseShown = ({ document, shown, paint }: ReliefSession): boolean =>
-  document.value.base !== null && shown.value !== null && mode.value === 'relief' && !paint.open.value;
+/** The relief on its base, which may be moved. */
+const isBaseShown = ({ shown, paint }: ReliefSession): boolean =>
+  shown.value !== null && mode.value === 'relief' && !paint.open.value;
 
 /** Light is drawn as values on the relief, pieces in its place. */
 const drawnMode = (chosen: ReliefMode): ViewMode =>

@@ -51,7 +51,11 @@ export function angleBetween(middlePx: Place, fromPx: Place, toPx: Place): numbe
 }
 
 /** `free`: by any angle rather than in steps of five degrees. */
-export function turnedBy(place: BasePlace, by_deg: number, free: boolean): BasePlace {
+export function turnedBy<T extends { readonly turn_deg: number }>(
+  place: T,
+  by_deg: number,
+  free: boolean,
+): T {
   const step = free ? 1 : turnStep_deg;
   return { ...place, turn_deg: within180(place.turn_deg + step * Math.round(by_deg / step)) };
 }

@@ -54,9 +54,9 @@ test('a groove is moved and turned by its handles, and stays on its plate', asyn
   await move.focus();
   await page.keyboard.press('ArrowRight');
   await page.keyboard.press('ArrowUp');
-  await expect(field('Shift of the base')).toHaveValue('5');
+  await expect(field('Shift of the base')).toHaveValue(/^5(\.0)?$/);
   await page.keyboard.press('Control+z');
-  await expect(field('Shift of the base')).toHaveValue('0');
+  await expect(field('Shift of the base')).toHaveValue(/^0(\.0)?$/);
   await turn.focus();
   for (let k = 0; k < 6; ++k) await page.keyboard.press('ArrowLeft');
   await expect(field('Turn of the base')).toHaveValue(/^90/);
@@ -69,7 +69,7 @@ test('a groove is moved and turned by its handles, and stays on its plate', asyn
   await page.mouse.move(x + 50, y - 30, { steps: 4 });
   await page.mouse.up();
   await expect(field('Shift of the base')).toHaveValue(/^\d/);
-  await expect(field('Shift of the base')).not.toHaveValue('0');
+  await expect(field('Shift of the base')).not.toHaveValue(/^0(\.0)?$/);
   await expect(strip(page, 'Preview up to date')).toBeVisible();
   const there = await move.boundingBox();
   expect(Math.abs((there?.x ?? 0) - box.x)).toBeLessThan(3);

@@ -128,8 +128,9 @@ export class ShapeMover implements Mover {
   /** `there`: whether the relief on its base is what is looked at. */
   placeHandles(viewport: Viewport, elements: GripElements, there: boolean): void {
     const seen = there ? this.#seen(viewport) : null;
-    const grips = this.place.peek()?.movable === false ? (['turn'] as const) : this.grips;
-    placeAround(elements, this.grips, null, 0);
-    placeAround(elements, grips, seen && seen.middlePx, halfSize_mm * (seen?.pixelsAMm ?? 0));
+    const middlePx = seen && seen.middlePx;
+    const radiusPx = halfSize_mm * (seen?.pixelsAMm ?? 0);
+    placeAround(elements, ['turn'], middlePx, radiusPx);
+    placeAround(elements, ['move'], this.place.peek()?.movable ? middlePx : null, radiusPx);
   }
 }

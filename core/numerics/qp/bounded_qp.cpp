@@ -127,7 +127,7 @@ BoundedQp::Implementation::Outcome BoundedQp::Implementation::solve(const Rows& 
   const ExchangeResult so_far = std::move(outcome.result);
   outcome.method = QpMethod::interior_point;
   Stopwatch watch;
-  const InteriorPointStart start{so_far.u, so_far.m, so_far.active, so_far.multiplier};
+  const InteriorPointStart start{so_far.u, so_far.m, so_far.active, so_far.multiplier, so_far.spread};
   const InteriorPointResult point = [&] {
     const auto span = context.span(share_of_exchange, share_of_interior_point, "Fitting into the thickness");
     return solve_interior_point(

@@ -376,7 +376,7 @@ ExchangeResult ExchangeSolver::run(const Rows& rows, const std::vector<RowKey>& 
     const int max_new = std::max(min_batch, result.history.back().active / batch_part);
     const auto missing = static_cast<double>(keys.size());
     if (result.work > settings.work_to_judge && missing > max_new && missing > spreading * missing_before) {
-      result.stopped = true;
+      result.stopped = result.spread = true;
       break;
     }
     missing_before = missing;

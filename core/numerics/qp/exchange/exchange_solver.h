@@ -34,6 +34,7 @@ struct ExchangeResult {
   int rounds = 0, columns = 0, pivots = 0;
   double work = 0;       // multiplications, about
   bool stopped = false;  // violations are left, or the work ran out
+  bool spread = false;   // stopped because contacts spread: u is the optimum of the rows that were looked at
   std::vector<BoundedQpRound> history;
   BoundedQpSeconds seconds;
 };

@@ -23,6 +23,8 @@ struct InteriorPointStart {
   Eigen::VectorXd u, m;
   std::vector<RowKey> active;  // rows with multipliers
   Eigen::VectorXd multiplier;
+  /// Whether u is the optimum of most of the rows that will hold: it is then mixed into the constraints' own start.
+  bool is_near = false;
 };
 
 struct InteriorPointResult {

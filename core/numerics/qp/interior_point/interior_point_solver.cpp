@@ -16,7 +16,7 @@ namespace {
 constexpr double boundary_part = 0.9995;
 constexpr double start_slack = 0.05;  // of the distance between the bounds
 // From a point well within the bounds towards an infeasible one of less energy than the optimum's (docs/numerics.md).
-constexpr double part_of_way = 0.7;
+constexpr double part_of_start = 0.7;
 constexpr double balance_tolerance = 1e-9;
 constexpr double zero_energy = 1e-18;  // of the stiffness times the square of the lengths
 constexpr double min_energy = 1e-12;   // of the same, where even the start has none
@@ -97,8 +97,8 @@ void InteriorPoint::begin(const InteriorPointStart& start) {
   u_ = inside ? c.start_u : start.u;
   m_ = inside ? c.start_m : start.m;
   if (inside && start.is_near) {
-    u_ += part_of_way * (start.u - u_);
-    m_ += part_of_way * (start.m - m_);
+    u_ += part_of_start * (start.u - u_);
+    m_ += part_of_start * (start.m - m_);
   }
   system_.place_held(u_, m_);
   bounds_.soft.setZero(static_cast<Eigen::Index>(bounds_.key.size()));

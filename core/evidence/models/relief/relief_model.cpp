@@ -70,8 +70,8 @@ Measurement measurement_of(const PhotographedRelief& picture) {
   return m;
 }
 
-/// Where a camera at `camera_mm` (or infinitely far away in the direction `offset`) sees the surface at a place of a
-/// picture that was straightened to the plane at `plane_mm`: the first place on its ray, from above.
+/// Where a camera sees the surface at a place of a picture that was straightened to the plane at `plane_mm`: the first
+/// place on its ray, from above. The camera is `aside_mm` beside the place and `distance_mm` above the plane.
 Vec2 seen_place(const ReliefSurface& surface, const Vec2& heights_mm, const Vec2& place_mm, double plane_mm,
                 const Vec2& aside_mm, double distance_mm) {
   const double across = aside_mm.norm() / distance_mm;  // for each millimetre of height
@@ -80,7 +80,10 @@ Vec2 seen_place(const ReliefSurface& surface, const Vec2& heights_mm, const Vec2
     return place_mm;
   const auto place = [&](double height) -> Vec2 { return place_mm + (height - plane_mm) / distance_mm * aside_mm; };
   const auto above = [&](double height) { return height - surface.at(surface.height_mm, place(height)); };
-  const double step = std::max(half_pixel * surface.pixel_mm / std::max(across, 1e-12), 1e-6),
+  // Half a pixel across, but no more steps than a ray through all of the grid needs.
+  const double max_steps = 2 / half_pixel * static_cast<double>(surface.height_mm.rows() + surface.height_mm.cols());
+  const double step = std::max(half_pixel * surface.pixel_mm / std::max(across, 1e-12),
+                               (heights_mm.y() - heights_mm.x()) / max_steps),
                lowest = heights_mm.x() - step;
   double high = heights_mm.y(), low = high;
   while (low > lowest && above(low) > 0) {

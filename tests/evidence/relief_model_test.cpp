@@ -58,18 +58,28 @@ int index_of(const ForwardModel& model, const std::string& name) {
   return -1;
 }
 
-TEST_CASE("ReliefModel.APlaneHasTheBrightnessOfLambertsLaw") {
-  PhotographedRelief r = relief(1, 50, 1);
+TEST_CASE("ReliefModel.ARoofHasTheBrightnessOfLambertsLaw") {
+  PhotographedRelief r = relief(1, 200, 1);
   for (Eigen::Index row = 0; row < r.surface.height_mm.rows(); ++row)
     for (Eigen::Index c = 0; c < r.surface.height_mm.cols(); ++c)
-      r.surface.height_mm(row, c) = 0.3 * static_cast<double>(c);
+      r.surface.height_mm(row, c) = 0.3 * std::min(static_cast<double>(c), 99 - static_cast<double>(c));
+  r.setup.camera_height_mm = 0;
+  const auto bright = [&](double slope) {
+    return 0.1 + 0.9 * Vec3(-slope, 0, 1).normalized().dot(r.setup.light_direction.normalized());
+  };
+  // Exposure cancels in the ratio of the sides.
   const ReliefModel model({r});
-  const Vec3 normal = Vec3(-0.3, 0, 1).normalized();
-  // All points are as bright as the brightest.
-  const double expected = 1;
-  CHECK(normal.dot(r.setup.light_direction.normalized()) > 0);
   const Eigen::MatrixXd shaded = model.predict(0, model.nominal(), Context());
-  for (Eigen::Index i = 0; i < shaded.rows(); ++i) CHECK_THAT(shaded(i, 0), WithinAbs(expected, 1e-9));
+  const double left = bright(0.3), right = bright(-0.3);
+  REQUIRE(std::abs(left / right - 1) > 0.2);
+  double scale = 0;
+  for (Eigen::Index i = 0; i < shaded.rows(); ++i) {
+    const double x = r.points[static_cast<std::size_t>(i)].place_mm.x();
+    if (std::abs(x - 50) < 2) continue;  // the ridge
+    const double of_lambert = shaded(i, 0) / (x < 50 ? left : right);
+    if (scale == 0) scale = of_lambert;
+    CHECK_THAT(of_lambert, WithinAbs(scale, 1e-9));
+  }
 }
 
 /// A cylinder of radius 80 mm about an axis along y at x = 50, 100 mm wide; its middle is at z = 0.

@@ -90,10 +90,11 @@ double stretch_energy_mj(const ClothTriangle& t, const ClothMaterial& material, 
   return 0.5 * t.area_mm2 * stress(material, strain).cwiseProduct(strain).sum();
 }
 
-void stretch_terms(const ClothTriangle& t, const ClothMaterial& material, const Positions& x, StretchTerms& terms) {
+void stretch_terms(const ClothTriangle& t, const ClothMaterial& material, const Positions& x, StretchTerms& terms,
+                   bool whole) {
   const Map f = deformation(t, x);
   const Eigen::Matrix2d strain = 0.5 * (f.transpose() * f - Eigen::Matrix2d::Identity());
-  const Eigen::Matrix2d s = stress(material, strain), pulling = without_pushing(s);
+  const Eigen::Matrix2d s = stress(material, strain), pulling = whole ? s : without_pushing(s);
   terms.energy_mj = 0.5 * t.area_mm2 * s.cwiseProduct(strain).sum();
   const Map force = t.area_mm2 * f * s;
   // Strain components e11, e22, 2 e12 change by B, one 3 x 3 matrix a corner.

@@ -18,6 +18,7 @@ struct ClothMaterial {
   double stretch_n_per_mm = 10;  // Young's modulus times thickness
   double poisson_ratio = 0.3;
   double bending_n_mm = 0.2;  // D: energy D k^2 / 2 an area of a cylinder of curvature k
+  double zipper_bending_n_mm2 = 0;  // B: energy B k^2 / 2 a length of zipper
 };
 
 struct ClothTriangle {
@@ -44,9 +45,9 @@ std::vector<ClothTriangle> cloth_triangles(const TriangleMesh& flat);
 std::vector<ClothHinge> cloth_hinges(const TriangleMesh& flat, double bending_n_mm);
 
 double stretch_energy_mj(const ClothTriangle& triangle, const ClothMaterial& material, const Positions& x);
-/// The Hessian is made positive semidefinite: of the stress, what pushes is left out of it.
+/// Unless `whole`, the Hessian is made positive semidefinite: of the stress, what pushes is left out of it.
 void stretch_terms(const ClothTriangle& triangle, const ClothMaterial& material, const Positions& x,
-                   StretchTerms& terms);
+                   StretchTerms& terms, bool whole = false);
 
 /// Largest principal strain by amount, of lengths: 0.01 where a line got a hundredth longer or shorter.
 double largest_strain(const ClothTriangle& triangle, const Positions& x);

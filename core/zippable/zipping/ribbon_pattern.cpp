@@ -24,7 +24,7 @@ class Refinement {
  public:
   Refinement(const std::vector<RibbonEdgePlace>& places, const Triangles& triangles) : places_(places) {
     for (Eigen::Index f = 0; f < triangles.rows(); ++f)
-      faces_.push_back({triangles(f, 0), triangles(f, 1), triangles(f, 2)});
+      faces_.push_back({triangles(f, 0), triangles(f, 1), triangles(f, 2)}), design_face_.push_back(static_cast<int>(f));
     for (int f = 0; f < static_cast<int>(faces_.size()); ++f)
       for (int k = 0; k < 3; ++k) attach(faces_[f][k], faces_[f][(k + 1) % 3], f);
     find_mates();
@@ -117,6 +117,7 @@ class Refinement {
       pattern.closed_at_mm.push_back(std::max({along_[t[0]], along_[t[1]], along_[t[2]]}));
       area += 0.5 * twice_area(places_[t[0]].flat_mm, places_[t[1]].flat_mm, places_[t[2]].flat_mm);
     }
+    pattern.triangle_of_design = design_face_;
     pattern.zipper_mm = zipper_mm_;
     pattern.width_mm = zipper_mm_ > 0 ? area / zipper_mm_ : std::sqrt(area);
     pattern.size_mm =
@@ -230,6 +231,7 @@ class Refinement {
       const int added = static_cast<int>(faces_.size());
       faces_[face] = {tip, first, middle};
       faces_.push_back({tip, middle, second});
+      design_face_.push_back(design_face_[static_cast<std::size_t>(face)]);
       auto& side = faces_of_.at(ends(tip, second));
       side[side[0] == face ? 0 : 1] = added;
       attach(first, middle, face), attach(middle, second, added);
@@ -242,6 +244,7 @@ class Refinement {
 
   std::vector<RibbonEdgePlace> places_;
   std::vector<std::array<int, 3>> faces_;
+  std::vector<int> design_face_;
   std::map<Ends, std::array<int, 2>> faces_of_;
   std::map<Ends, Twin> twins_;  // by the edge of either side
   std::vector<int> mate_;
@@ -278,6 +281,14 @@ RibbonPattern make_ribbon_pattern(const std::vector<RibbonEdgePlace>& places, co
   refinement.join(closures, count);
   if (edge_mm > 0) refinement.split_longer_than(edge_mm, context);
   return refinement.result();
+}
+
+RibbonPattern pattern_of(const RibbonDesign& design, double edge_mm, Context& context) {
+  RibbonPattern pattern = make_ribbon_pattern(design.places, design.triangles, edge_mm, context, design.closures);
+  for (const int triangle : pattern.triangle_of_design)
+    if (!design.turn_of_triangle_rad.empty())
+      pattern.turn_of_triangle_rad.push_back(design.turn_of_triangle_rad[static_cast<std::size_t>(triangle)]);
+  return pattern;
 }
 
 }  // namespace formwright

@@ -31,6 +31,10 @@ struct RibbonPattern {
   std::vector<SeamPair> seams;        // in the order of the slider
   std::vector<ClosurePair> closures;  // cut by cut, along each
   std::vector<double> closed_at_mm;   // per triangle: where the slider is when it has passed all around it
+  std::vector<int> triangle_of_design;  // per triangle: the one of the design that it is a part of
+  std::vector<double> turn_of_triangle_rad;  // per triangle: from `flat` to the sheet that it is cut from
+  /// Per triangle, in the plane of `flat`: from there to the cloth that lies free. Empty where all is as designed.
+  std::vector<Eigen::Matrix2d> cloth_change;
   double zipper_mm = 0;               // length of one side
   double width_mm = 0;                // mean width: area over length
   double size_mm = 0;                 // largest dimension of the predicted shape
@@ -56,8 +60,12 @@ struct RibbonDesign {
   std::vector<RibbonEdgePlace> places;
   Triangles triangles;
   std::vector<HandleClosure> closures = {};
+  std::vector<double> turn_of_triangle_rad = {};  // on its sheet; empty: none is turned
 };
 
 RibbonDesign ribbon_of(const FlatDesign& design);
+
+/// make_ribbon_pattern of a whole design, with the turns of its triangles.
+RibbonPattern pattern_of(const RibbonDesign& design, double edge_mm, Context& context);
 
 }  // namespace formwright

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/random.h"
+#include "zippable/zipping/made_pattern.h"
 
 namespace formwright {
 namespace {
@@ -34,9 +35,8 @@ ClothMaterial material_of(const ZippingOptions& options) {
   ClothMaterial material;
   material.stretch_n_per_mm = options.stretch_n_per_mm;
   material.poisson_ratio = poisson_ratio;
-  material.bending_n_mm =
-      options.bending_n_mm.value_or(options.stretch_n_per_mm * options.thickness_mm * options.thickness_mm /
-                                    (12 * (1 - poisson_ratio * poisson_ratio)));
+  material.bending_n_mm = bending_of(options);
+  material.zipper_bending_n_mm2 = options.zipper_bending_n_mm2;
   return material;
 }
 
@@ -61,12 +61,14 @@ class Zipping {
   const Positions& x() const { return x_; }
   std::vector<std::pair<double, Positions>> frames;
   bool settled = false;
+  int rounds = 0;
 
-  /// From the prediction instead, all seams closed: whether it stays there.
-  void rest_from(const Positions& predicted) {
-    x_ = predicted;
+  /// From a shape instead, all seams closed: whether it stays there.
+  void rest_from(const Positions& shape, bool whole_hessian) {
+    x_ = shape;
+    system_.whole_hessian = whole_hessian;
     for (std::size_t i = 0; i < system_.pairs().size(); ++i) begin_thread(i), system_.threads[i].length_mm = 0;
-    system_.anchor_n_per_mm3 = anchor * options_.stretch_n_per_mm / (pattern_.width_mm * pattern_.width_mm);
+    system_.anchor_n_per_mm3 = (whole_hessian ? 1e-2 : 1.0) * anchor * options_.stretch_n_per_mm / (pattern_.width_mm * pattern_.width_mm);
     settle(0, 1);
   }
 
@@ -168,14 +170,30 @@ class Zipping {
     const double pressure_mpa = 1e-6 * options_.stuffing_pressure_pa + 0.01 * held_percent_ *
                                                                            options_.stretch_n_per_mm /
                                                                            std::sqrt(system_.vertex_area_mm2().sum());
-    if (pressure_mpa <= 0) {
-      system_.outer_force_n.setZero();
-      return;
+    system_.outer_force_n.setZero();
+    if (pressure_mpa > 0) {
+      system_.outer_force_n =
+          pressure_force_n(pattern_.flat.F, x_, under_pressure_, enclosed_mm3() >= 0 ? pressure_mpa : -pressure_mpa);
+      // On the way the pull back to where everything was holds it.
+      if (passed_) balance(system_.outer_force_n, x_, system_.vertex_area_mm2());
     }
-    system_.outer_force_n =
-        pressure_force_n(pattern_.flat.F, x_, under_pressure_, enclosed_mm3() >= 0 ? pressure_mpa : -pressure_mpa);
-    // On the way the pull back to where everything was holds it.
-    if (passed_) balance(system_.outer_force_n, x_, system_.vertex_area_mm2());
+    if (passed_ && options_.weight_g_per_m2 > 0 && !pattern_.seams.empty()) hang();
+  }
+
+  /// What hangs turns until its centre of mass is below the hand. So down is where that is, and weight and hand turn
+  /// nothing.
+  void hang() {
+    constexpr double newton_per_gram = 9.81e-3, m2_per_mm2 = 1e-6;
+    const auto hand = std::min_element(pattern_.seams.begin(), pattern_.seams.end(), [&](const SeamPair& a, const SeamPair& b) {
+      return std::abs(a.along_mm - options_.hung_at_mm) < std::abs(b.along_mm - options_.hung_at_mm);
+    });
+    const Eigen::VectorXd& area = system_.vertex_area_mm2();
+    const Eigen::RowVector3d place = 0.5 * (x_.row(hand->left) + x_.row(hand->right)),
+                             down = area.transpose() * x_ / area.sum() - place;
+    if (!(down.norm() > 0)) return;
+    const Eigen::RowVector3d weight = newton_per_gram * m2_per_mm2 * options_.weight_g_per_m2 * down.normalized();
+    system_.outer_force_n += area * weight;
+    for (const int v : {hand->left, hand->right}) system_.outer_force_n.row(v) -= 0.5 * area.sum() * weight;
   }
 
   ZippingSystem::Progress move(int iterations, double tolerance) {
@@ -192,6 +210,7 @@ class Zipping {
     for (int round = 0; round < settling_rounds && !settled; ++round) {
       const auto progress = move(newton_steps_of_rest, 1e-11);
       settled = progress.settled && progress.iterations == 1;
+      ++rounds;
       context_.progress(from_share + (to_share - from_share) * round / settling_rounds);
     }
   }
@@ -293,6 +312,11 @@ bool better(const ZippingResult& a, const ZippingResult& b) {
 
 }  // namespace
 
+double bending_of(const ZippingOptions& options) {
+  return options.bending_n_mm.value_or(options.stretch_n_per_mm * options.thickness_mm * options.thickness_mm /
+                                       (12 * (1 - poisson_ratio * poisson_ratio)));
+}
+
 ZippingOutcome zipping_outcome(const ZippingResult& result, double tolerance_percent) {
   if (!result.closed()) return ZippingOutcome::open_seams;
   // A shape that still moves where it should lie has not been shown to stay there.
@@ -305,15 +329,24 @@ ZippingOutcome zipping_outcome(const ZippingResult& result, double tolerance_per
                                                                                      : ZippingOutcome::another_shape;
 }
 
+ZippedAtRest zipped_at_rest(const RibbonPattern& designed, const ZippingOptions& options, const Positions& start,
+                            Context& context) {
+  const RibbonPattern pattern = made_pattern(designed, options);
+  Zipping zipping(pattern, options, 0, context);
+  zipping.rest_from(start, true);
+  if (!zipping.x().allFinite())
+    throw Error(ErrorCode::could_not_solve, "", "The zipped cloth has no finite place there.");
+  return {zipping.x(), zipping.settled, zipping.rounds, zipping.system().iterations(), zipping.system().energies(zipping.x())};
+}
+
 ZippingResult simulate_zipping(const RibbonDesign& design, const ZippingOptions& options, Context& context) {
   Stopwatch watch;
   context.progress(0, "Cutting the cloth");
-  const RibbonPattern pattern =
-      make_ribbon_pattern(design.places, design.triangles, options.edge_mm, context, design.closures);
+  const RibbonPattern pattern = made_pattern(pattern_of(design, options.edge_mm, context), options);
   Zipping at_rest(pattern, options, 0, context);
   {
     const auto span = context.span(0, 0.1, "Simulating the zipped shape at rest");
-    at_rest.rest_from(pattern.predicted_mm);
+    at_rest.rest_from(pattern.predicted_mm, false);
   }
   const ShapeComparison rest = compare_shapes(at_rest.x(), pattern.predicted_mm, at_rest.system().vertex_area_mm2());
   const std::vector<double> holds =

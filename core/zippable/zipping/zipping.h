@@ -8,20 +8,24 @@
 
 #include "base/context.h"
 #include "base/data/parameters.h"
+#include "zippable/making/making_errors.h"
 #include "zippable/zipping/shape_comparison.h"
 #include "zippable/zipping/zipping_system.h"
 
 namespace formwright {
 
 namespace unit {
-inline constexpr Unit newton_per_mm{"N/mm"}, newton_mm{"N mm"};
+inline constexpr Unit newton_per_mm{"N/mm"}, newton_mm{"N mm"}, newton_mm2{"N mm²"}, gram_per_m2{"g/m²"};
 }
 
-struct ZippingOptions {
+struct ZippingOptions : MakingErrors {
   double thickness_mm = 0.5;
   double stretch_n_per_mm = 10;
   std::optional<double> bending_n_mm;
+  double zipper_bending_n_mm2 = 0;
   double stuffing_pressure_pa = 0;
+  double weight_g_per_m2 = 0;
+  double hung_at_mm = 0;
   std::optional<double> hold_open_percent;
   double press_out_percent = 300;
   double edge_mm = 0;
@@ -30,7 +34,7 @@ struct ZippingOptions {
   int frames = 40;
   double tolerance_percent = 2;
 
-  static constexpr auto parameters = std::tuple{
+  static constexpr auto parameters = std::tuple_cat(std::tuple{
       parameter("thickness_mm", &ZippingOptions::thickness_mm, "Cloth thickness", unit::mm, 0.01, 20,
                 "Thickness of the cloth. It sets the bending stiffness unless that is given; thicker cloth bends less.")
           .slider(0.1, 3)
@@ -48,6 +52,22 @@ struct ZippingOptions {
                 1e6, "Pressure of the stuffing on the inside of the parts that are already closed. 0: not stuffed.")
           .slider(0, 1000)
           .group("Cloth"),
+      parameter("zipper_bending_n_mm2", &ZippingOptions::zipper_bending_n_mm2, "Zipper's bending stiffness",
+                unit::newton_mm2, 0, 1e6,
+                "Bending stiffness of the closed zipper, a moment times a radius. 0: the seams bend as freely as the cloth.")
+          .slider(0, 100)
+          .group("Cloth")
+          .advanced(),
+      parameter("weight_g_per_m2", &ZippingOptions::weight_g_per_m2, "Weight of the cloth", unit::gram_per_m2, 0, 1e5,
+                "Weight that pulls the closed shape down while it hangs from one place of the zipper. 0: no weight.")
+          .slider(0, 1000)
+          .group("Cloth")
+          .advanced(),
+      parameter("hung_at_mm", &ZippingOptions::hung_at_mm, "Hung at", unit::mm, 0, 1e6,
+                "Where the closed shape hangs: length along the zipper from its start. Counts only with a weight.")
+          .slider(0, 2000)
+          .group("Cloth")
+          .advanced(),
       parameter(
           "hold_open_percent", &ZippingOptions::hold_open_percent, "Held open", unit::percent, 0, 500,
           "Pressure that holds the closed part open from inside while it is zipped, in percent of stretch stiffness divided by size; it is released at the end. Automatic: tries 40, 0 and 15 until the shape is reached.")
@@ -82,8 +102,12 @@ struct ZippingOptions {
           "tolerance_percent", &ZippingOptions::tolerance_percent, "Tolerance", unit::percent, 0.01, 50,
           "Largest distance from the design, in percent of the object's size, within which 95 % of the cloth must lie to count as the intended shape.")
           .slider(0.5, 10)
-          .group("Simulation")};
+          .group("Simulation")},
+      inherit_parameters<ZippingOptions>(MakingErrors::parameters));
 };
+
+/// As given, or as a solid sheet of this thickness.
+double bending_of(const ZippingOptions& options);
 
 struct ZippingFrame {
   Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor> V;  // mm
@@ -112,6 +136,20 @@ struct ZippingResult {
 
   bool closed() const { return open_seams == 0; }
 };
+
+/// A shape in which nothing moves any more.
+struct ZippedAtRest {
+  Positions x;           // n x 3, mm, anywhere
+  bool settled = false;  // within the rounds that are allowed
+  int rounds = 0, iterations = 0;
+  ZippingEnergies energies;
+};
+
+/// What the ribbon `pattern`, made as `options` say, comes to rest as when it is laid into `start` with all seams
+/// closed, without the course of zipping. `pattern` is as designed. Throws Error: could_not_solve where the errors of
+/// making leave a triangle without area, cancelled.
+ZippedAtRest zipped_at_rest(const RibbonPattern& pattern, const ZippingOptions& options, const Positions& start,
+                            Context& context);
 
 /// as_the_cloth_does: farther off than the tolerance, but no farther than the same cloth sags that was put into the
 /// shape.

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/error.h"
 #include "base/parallel.h"
+#include "zippable/zipping/zipper_hinges.h"
 
 namespace formwright {
 namespace {
@@ -68,6 +70,12 @@ ZippingSystem::ZippingSystem(const RibbonPattern& pattern, const ClothMaterial& 
       triangles_(cloth_triangles(pattern.flat)),
       hinges_(cloth_hinges(pattern.flat, material.bending_n_mm)) {
   const int n = pattern.flat.vertex_count();
+  for (std::size_t f = 0; f < pattern.cloth_change.size(); ++f) {
+    triangles_[f].gradient *= pattern.cloth_change[f].inverse();
+    triangles_[f].area_mm2 *= pattern.cloth_change[f].determinant();
+  }
+  if (material.zipper_bending_n_mm2 > 0)
+    for (const ClothHinge& hinge : zipper_hinges(pattern, material.zipper_bending_n_mm2)) hinges_.push_back(hinge);
   for (const SeamPair& seam : pattern.seams) pairs_.push_back({seam.left, seam.right, seam.length_mm});
   for (const ClosurePair& closure : pattern.closures)
     pairs_.push_back({closure.left, closure.right, closure.length_mm});
@@ -184,10 +192,10 @@ Positions ZippingSystem::gradient_n(const Positions& x) const {
   return gradient;
 }
 
-void ZippingSystem::assemble(const Positions& x, Positions& gradient) {
+void ZippingSystem::assemble(const Positions& x, Positions& gradient, bool whole) {
   std::copy(bending_.begin(), bending_.end(), lower_.valuePtr());
   parallel_for(triangles_.size(), grain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t f = begin; f < end; ++f) stretch_terms(triangles_[f], material_, x, terms_[f]);
+    for (std::size_t f = begin; f < end; ++f) stretch_terms(triangles_[f], material_, x, terms_[f], whole);
   });
   gradient = -outer_force_n;
   for (Eigen::Index i = 0; i < x.rows(); ++i) {
@@ -219,6 +227,23 @@ void ZippingSystem::assemble(const Positions& x, Positions& gradient) {
   }
 }
 
+void ZippingSystem::factorize(const Positions& x, Positions& gradient, Context& context) {
+  constexpr int cautious_steps = 3;
+  if (whole_hessian && cautious_ == 0) {
+    assemble(x, gradient, true);
+    try {
+      cholesky_.factorize(lower_, context);
+      return;
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::could_not_solve) throw;
+      cautious_ = cautious_steps;
+    }
+  }
+  cautious_ = std::max(0, cautious_ - 1);
+  assemble(x, gradient, false);
+  cholesky_.factorize(lower_, context);
+}
+
 ZippingSystem::Progress ZippingSystem::minimise(Positions& x, int iterations_max, double decrement_mj,
                                                 Context& context) {
   Progress progress;
@@ -228,9 +253,8 @@ ZippingSystem::Progress ZippingSystem::minimise(Positions& x, int iterations_max
   const auto quiet = context.span(0, 0, "");
   while (progress.iterations < iterations_max) {
     context.check_cancelled();
-    assemble(x, gradient);
+    factorize(x, gradient, context);
     step = -Eigen::Map<const Eigen::VectorXd>(gradient.data(), gradient.size());
-    cholesky_.factorize(lower_, context);
     Eigen::MatrixXd columns = step;
     cholesky_.solve(columns);
     const double slope = -step.dot(columns.col(0));

@@ -50,6 +50,9 @@ class ZippingSystem {
   Positions outer_force_n;      // n x 3, held while minimising
   Positions anchor_mm;          // n x 3; every vertex is drawn back to it weakly, which settles what nothing else does
   double anchor_n_per_mm3 = 0;  // that pull, for an area and a distance
+  /// Newton's method with the whole Hessian where that is positive definite, as it is near a shape at rest: a few steps
+  /// there instead of hundreds.
+  bool whole_hessian = false;
 
   ZippingEnergies energies(const Positions& x) const;
   /// Everything that is minimised: energies, anchors, outer force.
@@ -80,7 +83,9 @@ class ZippingSystem {
   Slot slot(int i, int j) const;
   void add_block(const Slot& slot, const Eigen::Matrix3d& block);
   void add_diagonal(const Slot& slot, double value);
-  void assemble(const Positions& x, Positions& gradient);
+  void assemble(const Positions& x, Positions& gradient, bool whole);
+  /// Leaves a factor of a positive definite matrix.
+  void factorize(const Positions& x, Positions& gradient, Context& context);
 
   std::vector<Pair> pairs_;
   ClothMaterial material_;
@@ -94,6 +99,7 @@ class ZippingSystem {
   std::vector<double> bending_;  // constant part of the matrix
   SparseCholesky cholesky_;
   int iterations_ = 0;
+  int cautious_ = 0;  // steps for which the whole Hessian is not tried
 };
 
 }  // namespace formwright

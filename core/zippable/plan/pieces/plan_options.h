@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "base/data/parameters.h"
+#include "zippable/making/making_errors.h"
 
 namespace formwright {
 
@@ -45,7 +46,7 @@ struct EnumNames<PaperEdges> {
   static constexpr std::array<std::string_view, 2> labels{"Plain", "Tabs"};
 };
 
-struct PlanOptions {
+struct PlanOptions : MakingErrors {
   ZipperCoil coil = ZipperCoil::coil_3;
   std::optional<double> tape_width_mm, teeth_width_mm, gap_mm;
   ZipperOffset method = ZipperOffset::sewing;
@@ -62,7 +63,7 @@ struct PlanOptions {
   double track_width_mm = 4, slot_width_mm = 1.6, rig_opening_mm = 10, screw_mm = 3.2;
   InstructionPaper paper = InstructionPaper::a4;
 
-  static constexpr auto parameters = std::tuple{
+  static constexpr auto parameters = std::tuple_cat(std::tuple{
       parameter(
           "coil", &PlanOptions::coil, "Zipper",
           "Size of the coil zipper, which sets the widths of tape, teeth and gap. None: a paper model without a zipper.")
@@ -171,7 +172,7 @@ struct PlanOptions {
           .group("Rig")
           .advanced(),
       parameter("paper", &PlanOptions::paper, "Paper", "Paper size of the printed tape template and assembly sheet.")
-          .group("Sheets")};
+          .group("Sheets")}, inherit_parameters<PlanOptions>(MakingErrors::parameters));
 };
 
 }  // namespace formwright

@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "evidence/models/zippable/zippable_model.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "zippable/zipping/made_pattern.h"
+
+namespace formwright {
+namespace {
+
+constexpr Eigen::Index max_scan_points = 1500;
+constexpr int rounds_of_alignment = 20;
+constexpr double finer_edge = 0.5;  // of the ribbon's width
+/// What the simulation is known to be off by without any fault, of the object's size.
+constexpr double known_misfit_share = 0.003;
+
+TriangleMesh shape_of(const RibbonPattern& pattern, const Positions& x) {
+  TriangleMesh mesh;
+  mesh.V = x;
+  mesh.F = pattern.flat.F;
+  return mesh;
+}
+
+bool has_scan(const MeasuredZippable& object) { return object.scan_mm.rows() > 0; }
+
+}  // namespace
+
+ZippableModel::ZippableModel(std::vector<MeasuredZippable> objects, Context& context) : objects_(std::move(objects)) {
+  for (std::size_t i = 0; i < objects_.size(); ++i) {
+    const MeasuredZippable& object = objects_[i];
+    const auto span = context.span(static_cast<double>(i) / static_cast<double>(objects_.size()),
+                                   (static_cast<double>(i) + 1) / static_cast<double>(objects_.size()),
+                                   "Simulating the zipped shape");
+    PreparedObject prepared;
+    prepared.pattern[0] = pattern_of(object.design, object.setup.edge_mm, context);
+    const double coarse = prepared.pattern[0].width_mm, edge = object.setup.edge_mm;
+    prepared.pattern[1] =
+        pattern_of(object.design, edge > 0 ? finer_edge * edge : finer_edge * coarse, context);
+    for (std::size_t k = 0; k < 2; ++k)
+      prepared.start[k] =
+          zipped_at_rest(prepared.pattern[k], object.setup, prepared.pattern[k].predicted_mm, context).x;
+    known_misfit_mm_ = std::max(known_misfit_mm_, known_misfit_share * prepared.pattern[0].size_mm);
+    if (has_scan(object)) {
+      prepared.scan_mm = evenly_chosen(object.scan_mm, max_scan_points);
+      const ScannedShape shape(shape_of(prepared.pattern[0], prepared.start[0]), 0.5 * object.setup.thickness_mm);
+      prepared.scan_motion = shape.aligned(prepared.scan_mm, shape.found(prepared.scan_mm, context),
+                                           rounds_of_alignment, context);
+    }
+    prepared_.push_back(std::move(prepared));
+  }
+  declare_zippable_parameters(objects_.front(), prepared_.front().pattern[0], parameters_, causes_);
+  for (int i = 0; i < static_cast<int>(objects_.size()); ++i) {
+    if (!objects_[static_cast<std::size_t>(i)].lengths.empty()) add_lengths(i);
+    if (has_scan(objects_[static_cast<std::size_t>(i)])) add_scan(i, context);
+  }
+}
+
+void ZippableModel::add_lengths(int object) {
+  const MeasuredZippable& own = objects_[static_cast<std::size_t>(object)];
+  const RibbonPattern& pattern = prepared_[static_cast<std::size_t>(object)].pattern[0];
+  Measurement m;
+  m.name = own.name;
+  m.extent_mm = pattern.zipper_mm;
+  const auto n = static_cast<Eigen::Index>(own.lengths.size());
+  m.place.resize(n, 2);
+  m.measured.resize(n, 1);
+  m.sigma.resize(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const MeasuredLength& length = own.lengths[static_cast<std::size_t>(i)];
+    // Lengths between neighbouring places are neighbours.
+    const int low = std::min(length.from.number, length.to.number), high = std::max(length.from.number, length.to.number);
+    m.place.row(i) << low * own.marker_spacing_mm / pattern.zipper_mm, high * own.marker_spacing_mm / pattern.zipper_mm;
+    m.measured(i, 0) = length.length_mm;
+    m.sigma[i] = length.sigma_mm;
+    if (!length.flat || pattern.turn_of_triangle_rad.empty()) continue;
+    const auto piece_turn = [&](const ZipperMark& mark) {
+      const SeamPair& pair =
+          pattern.seams[static_cast<std::size_t>(zipper_place(pattern, mark.number * own.marker_spacing_mm).pair[0])];
+      const int vertex = mark.left ? pair.left : pair.right;
+      for (Eigen::Index f = 0; f < pattern.flat.F.rows(); ++f)
+        if ((pattern.flat.F.row(f).array() == vertex).any())
+          return pattern.turn_of_triangle_rad[static_cast<std::size_t>(f)];
+      return 0.0;
+    };
+    if (std::abs(piece_turn(length.from) - piece_turn(length.to)) > 1e-6)
+      throw Error(ErrorCode::invalid_input, "object",
+                  own.name + ": lengths.csv: the flat length from mark " + std::to_string(length.from.number) + " to " +
+                      std::to_string(length.to.number) + " goes from one piece to another: measure within one piece.");
+  }
+  measurements_.push_back(std::move(m));
+  sources_.push_back({object, false});
+}
+
+void ZippableModel::add_scan(int object, const Context& context) {
+  const MeasuredZippable& own = objects_[static_cast<std::size_t>(object)];
+  const PreparedObject& prepared = prepared_[static_cast<std::size_t>(object)];
+  const RibbonPattern& pattern = prepared.pattern[0];
+  const Positions moved = prepared.scan_motion(prepared.scan_mm);
+  const PointDistance nearest(shape_of(pattern, prepared.start[0]));
+  Measurement m;
+  m.name = own.name + (own.lengths.empty() ? "" : ", scan");
+  const Eigen::RowVector3d low = pattern.flat.V.colwise().minCoeff();
+  m.extent_mm = (pattern.flat.V.colwise().maxCoeff() - low).maxCoeff();
+  m.place.resize(moved.rows(), 2);
+  m.measured = Eigen::MatrixXd::Zero(moved.rows(), 1);
+  m.sigma = Eigen::VectorXd::Constant(moved.rows(), own.scan_sigma_mm);
+  for (Eigen::Index i = 0; i < moved.rows(); ++i) {
+    if (i % 256 == 0) context.check_cancelled();
+    const NearestPoint near = *nearest.nearest(moved.row(i).transpose());
+    Eigen::RowVector3d flat = Eigen::RowVector3d::Zero();
+    for (int k = 0; k < 3; ++k) flat += near.barycentric[k] * pattern.flat.V.row(pattern.flat.F(near.face, k));
+    m.place.row(i) = (flat - low).head<2>() / m.extent_mm;
+  }
+  measurements_.push_back(std::move(m));
+  sources_.push_back({object, true});
+}
+
+double ZippableModel::value(const char* name, const Eigen::VectorXd& u) const {
+  for (std::size_t p = 0; p < parameters_.size(); ++p)
+    if (parameters_[p].name == name) return parameters_[p].value(u[static_cast<Eigen::Index>(p)]);
+  return 0;
+}
+
+bool ZippableModel::finer_at(const Eigen::VectorXd& u) const { return value("finer_cloth", u) > 0.5; }
+
+ZippingOptions ZippableModel::options_at(int object, const Eigen::VectorXd& u) const {
+  const MeasuredZippable& own = objects_[static_cast<std::size_t>(object)];
+  Json values = write_parameters(own.setup);
+  values["bending_n_mm"] = bending_of(own.setup);
+  for (std::size_t p = 0; p < parameters_.size(); ++p) {
+    const ModelParameter& parameter = parameters_[p];
+    if (!values.contains(parameter.name)) continue;
+    // Where objects were set up differently, what is found comes on top of what each set-up says.
+    const double at = parameter.value(u[static_cast<Eigen::Index>(p)]), set_up = values[parameter.name].get<double>();
+    values[parameter.name] = parameter.logarithmic ? set_up * at / parameter.nominal : set_up + at - parameter.nominal;
+  }
+  ZippingOptions options = read_parameters<ZippingOptions>(values);
+  if (value("half_as_stiff", u) > 0.5) options.stretch_n_per_mm *= 0.5;
+  return options;
+}
+
+ZippableModel::Rest ZippableModel::at_rest(int object, const Eigen::VectorXd& u, const Context& context) const {
+  const ZippingOptions options = options_at(object, u);
+  const bool finer = finer_at(u);
+  const std::string key = std::to_string(object) + (finer ? " finer " : " ") + write_parameters(options).dump();
+  std::promise<Rest> promise;
+  std::shared_future<Rest> known;
+  {
+    const std::scoped_lock lock(mutex_);
+    if (const auto found = rests_.find(key); found != rests_.end()) known = found->second;
+    else rests_.emplace(key, promise.get_future().share());
+  }
+  if (known.valid()) return known.get();
+  try {
+    const PreparedObject& prepared = prepared_[static_cast<std::size_t>(object)];
+    const std::size_t k = finer ? 1 : 0;
+    Context own = context;
+    const auto quiet = own.span(0, 0, "");
+    auto rest = std::make_shared<const Positions>(zipped_at_rest(prepared.pattern[k], options, prepared.start[k], own).x);
+    promise.set_value(rest);
+    return rest;
+  } catch (...) {
+    promise.set_exception(std::current_exception());
+    const std::scoped_lock lock(mutex_);
+    rests_.erase(key);
+    throw;
+  }
+}
+
+ZippableModel::ZipperPlace ZippableModel::zipper_place(const RibbonPattern& pattern, double along_mm) {
+  const std::vector<SeamPair>& seams = pattern.seams;
+  // Where a stretch of the zipper ends the next one begins at the same length.
+  for (std::size_t i = 0; i + 1 < seams.size(); ++i) {
+    const double from = seams[i].along_mm, to = seams[i + 1].along_mm;
+    if (to > from && along_mm <= to)
+      return {{static_cast<int>(i), static_cast<int>(i + 1)}, std::clamp((along_mm - from) / (to - from), 0.0, 1.0)};
+  }
+  const int last = static_cast<int>(seams.size()) - 1;
+  return {{last, last}, 0};
+}
+
+Eigen::MatrixXd ZippableModel::lengths_at(int object, const Eigen::VectorXd& u, const Context& context) const {
+  const MeasuredZippable& own = objects_[static_cast<std::size_t>(object)];
+  const PreparedObject& prepared = prepared_[static_cast<std::size_t>(object)];
+  const RibbonPattern& pattern = prepared.pattern[finer_at(u) ? 1 : 0];
+  const Rest rest = at_rest(object, u, context);
+  // Nothing is sewn yet where pieces lie flat.
+  MakingErrors cut = options_at(object, u);
+  cut.more_gap_mm = cut.seam_take_up_mm = 0;
+  const RibbonPattern flat = made_pattern(pattern, cut);
+  std::vector<int> triangle_of(static_cast<std::size_t>(pattern.flat.vertex_count()), 0);
+  for (int f = 0; f < pattern.flat.face_count(); ++f)
+    for (int k = 0; k < 3; ++k) triangle_of[static_cast<std::size_t>(pattern.flat.F(f, k))] = f;
+  const double farther = 1 + value("marks_scale", u), larger = 1 + value("tape_scale", u);
+  Eigen::MatrixXd lengths(static_cast<Eigen::Index>(own.lengths.size()), 1);
+  for (Eigen::Index i = 0; i < lengths.rows(); ++i) {
+    const MeasuredLength& length = own.lengths[static_cast<std::size_t>(i)];
+    const auto between = [&](const ZipperMark& mark, const auto& at) {
+      const ZipperPlace place = zipper_place(pattern, farther * mark.number * own.marker_spacing_mm);
+      return Vec3((1 - place.share) * at(pattern.seams[static_cast<std::size_t>(place.pair[0])]) +
+                  place.share * at(pattern.seams[static_cast<std::size_t>(place.pair[1])]));
+    };
+    if (length.flat) {
+      const auto on_side = [&](const ZipperMark& mark) {
+        return between(mark, [&](const SeamPair& pair) {
+          return Vec3(flat.flat.V.row(mark.left ? pair.left : pair.right).transpose());
+        });
+      };
+      const Vec2 across = (on_side(length.to) - on_side(length.from)).head<2>();
+      const ZipperPlace place = zipper_place(pattern, length.from.number * own.marker_spacing_mm);
+      const SeamPair& pair = pattern.seams[static_cast<std::size_t>(place.pair[0])];
+      const auto triangle = static_cast<std::size_t>(
+          triangle_of[static_cast<std::size_t>(length.from.left ? pair.left : pair.right)]);
+      lengths(i, 0) = flat.cloth_change.empty() ? across.norm() : (flat.cloth_change[triangle] * across).norm();
+    } else {
+      const auto zipped = [&](const ZipperMark& mark) {
+        return between(mark, [&](const SeamPair& pair) {
+          return Vec3(0.5 * (rest->row(pair.left) + rest->row(pair.right)).transpose());
+        });
+      };
+      lengths(i, 0) = (zipped(length.to) - zipped(length.from)).norm();
+    }
+  }
+  return larger * lengths;
+}
+
+Eigen::MatrixXd ZippableModel::distances_at(int object, const Eigen::VectorXd& u, const Context& context) const {
+  const MeasuredZippable& own = objects_[static_cast<std::size_t>(object)];
+  const PreparedObject& prepared = prepared_[static_cast<std::size_t>(object)];
+  const Rest rest = at_rest(object, u, context);
+  const double larger = 1 + value("tape_scale", u);
+  const ScannedShape shape(shape_of(prepared.pattern[finer_at(u) ? 1 : 0], larger * *rest),
+                           0.5 * own.setup.thickness_mm);
+  const RigidMotion motion = shape.aligned(prepared.scan_mm, prepared.scan_motion, rounds_of_alignment, context);
+  // The scan's distances from the shape: a prediction is what a point that was measured at 0 is off by, the other way.
+  return -shape.distances_mm(prepared.scan_mm, motion);
+}
+
+Eigen::MatrixXd ZippableModel::predict(int measurement, const Eigen::VectorXd& u, const Context& context) const {
+  const Source& source = sources_[static_cast<std::size_t>(measurement)];
+  Eigen::MatrixXd result =
+      source.scan ? distances_at(source.object, u, context) : lengths_at(source.object, u, context);
+  if (!result.allFinite()) throw Error(ErrorCode::could_not_solve, "", "The zipped cloth has no finite place there.");
+  return result;
+}
+
+std::string ZippableModel::in_words(int cause, const std::vector<double>& values) const {
+  return zippable_cause_in_words(causes_[static_cast<std::size_t>(cause)].name, values);
+}
+
+MakingProfile ZippableModel::profile_at(const Eigen::VectorXd& u) const {
+  MakingProfile profile;
+  for (const ParameterInfo& info : describe_parameters<MakingErrors>())
+    if (const double at = value(info.name.c_str(), u); at != 0) profile.parameters[info.name] = at;
+  for (const MeasuredZippable& object : objects_) profile.from.push_back(object.name);
+  return profile;
+}
+
+}  // namespace formwright

@@ -90,6 +90,33 @@ std::vector<CutSheet> lay_out(const ZippablePlan& plan, const PlanOptions& optio
   return sheets;
 }
 
+/// A sheet is laid out as the cloth lies when it has changed: on what is left of the bed then, and with the cut's
+/// whole kerf.
+PlanOptions with_room_for_the_cloth(PlanOptions options) {
+  options.kerf_mm = std::max(0.0, options.kerf_mm + options.more_kerf_mm);
+  if (!options.changes_the_cloth()) return options;
+  const Eigen::Matrix2d back = options.cloth_change().inverse();
+  // What this rectangle takes on the bed is a parallelogram.
+  const double askew = std::abs(back(0, 1));
+  Eigen::Matrix2d takes;
+  takes << back(0, 0), askew, askew, back(1, 1);
+  const Vec2 bed = takes.inverse() * Vec2(options.bed_x_mm, options.bed_y_mm);
+  options.bed_x_mm = bed.x(), options.bed_y_mm = bed.y();
+  return options;
+}
+
+/// From the cloth as it lies in the end to the cloth as it is cut. The bed keeps its size.
+void make_up_for_the_cloth(std::vector<CutSheet>& sheets, const PlanOptions& given) {
+  if (!given.changes_the_cloth()) return;
+  const Eigen::Matrix2d back = given.cloth_change().inverse();
+  for (CutSheet& sheet : sheets) {
+    const Vec2 shift(std::max(0.0, -back(0, 1)) * sheet.height_mm, std::max(0.0, -back(1, 0)) * sheet.width_mm);
+    for (CutPath& path : sheet.paths)
+      for (Vec2& point : path.points_mm) point = back * point + shift;
+    sheet.width_mm = given.bed_x_mm, sheet.height_mm = given.bed_y_mm;
+  }
+}
+
 /// How wide a tape may be that lies flat behind the ribbon and stays off the seam of the other edge's tape.
 double tape_room_mm(const ZippablePlan& plan) {
   constexpr double seam_mm = 3;  // from the cloth's edge to behind the stitches
@@ -98,6 +125,18 @@ double tape_room_mm(const ZippablePlan& plan) {
 constexpr double min_tape_mm = 5;    // less cannot be sewn
 constexpr double min_tab_mm = 2;     // less does not hold
 constexpr double min_text_mm = 1.5;  // less cannot be read on cloth
+
+/// What a plan differs by from one without errors of making; empty where nothing is made up for.
+std::string corrections_in_words(const PlanOptions& given) {
+  std::string text;
+  const MakingErrors none, &own = given;
+  const Json values = write_parameters(own), usual = write_parameters(none);
+  for (const ParameterInfo& info : describe_parameters<MakingErrors>())
+    if (values[info.name] != usual[info.name])
+      text += (text.empty() ? "" : ", ") + info.label + " (" + with_digits(values[info.name].get<double>(), 3) +
+              (info.unit.empty() ? "" : " " + info.unit) + ")";
+  return text.empty() ? text : "The plan makes up for: " + text + ".";
+}
 
 void say_what_to_know(const FlatDesign& design, const PlanOptions& options, ZippablePlan& plan) {
   const auto plural = [](int count, const std::string& one, const std::string& many) {
@@ -179,8 +218,20 @@ Vec2 paper_size_mm(InstructionPaper paper) {
   return paper == InstructionPaper::a4 ? Vec2(210, 297) : Vec2(215.9, 279.4);
 }
 
-ZippablePlan plan_zippable(const FlatDesign& design, const PlanOptions& options, Context& context) {
+PlanRecord record_of(const FlatDesign& design, const ZippablePlan& plan) {
+  PlanRecord record;
+  record.marker_spacing_mm = plan.marker_spacing_mm;
+  for (Eigen::Index f = 0; f < design.F.rows(); ++f) {
+    const Eigen::Matrix2d& turn =
+        plan.nesting.places[static_cast<std::size_t>(plan.splitting.piece_of_face[static_cast<std::size_t>(f)])].turn;
+    record.turn_of_triangle_rad.push_back(std::atan2(turn(1, 0), turn(0, 0)));
+  }
+  return record;
+}
+
+ZippablePlan plan_zippable(const FlatDesign& design, const PlanOptions& given, Context& context) {
   ZippablePlan plan;
+  const PlanOptions options = with_room_for_the_cloth(given);
   Stopwatch watch;
   std::vector<Vec2> designed;
   for (const FlatVertex& v : design.boundary) designed.push_back(v.flat_mm);
@@ -191,8 +242,9 @@ ZippablePlan plan_zippable(const FlatDesign& design, const PlanOptions& options,
     throw Error(ErrorCode::invalid_input, "edges",
                 "Tabs are for paper models without a zipper: set the zipper to none, or the edges to plain.");
   std::optional<RigSizes> rig;
-  if (options.rig) rig = rig_sizes(options, plan.zipper);
-  plan.ribbon = offset_ribbon(design, options.method, plan.zipper.offset_mm());
+  if (options.rig) rig = rig_sizes(given, plan.zipper);
+  plan.edges_moved_mm = plan.zipper.offset_mm() + 0.5 * options.more_gap_mm - options.seam_take_up_mm;
+  plan.ribbon = offset_ribbon(design, options.method, plan.edges_moved_mm);
   plan.area_before_mm2 = area_mm2(design.F, plan.ribbon.flat_mm);
   plan.marker_spacing_mm =
       options.marker_spacing_mm.value_or(options.method == ZipperOffset::sewing && !options.rig ? 30 : 50);
@@ -243,12 +295,14 @@ ZippablePlan plan_zippable(const FlatDesign& design, const PlanOptions& options,
     nest_by_fabric(plan, nesting, context);
   }
   plan.sheets = lay_out(plan, options);
+  make_up_for_the_cloth(plan.sheets, given);
   const Vec2 paper = paper_size_mm(options.paper);
   plan.tape =
       make_tape_template(design, plan.zipper, plan.markers, plan.marker_spacing_mm, plan.runs, paper.y(), paper.x());
-  if (rig) plan.rig = make_rig(design, plan.ribbon, plan.markers, plan.pieces, plan.runs, options, *rig, context);
+  if (rig) plan.rig = make_rig(design, plan.ribbon, plan.markers, plan.pieces, plan.runs, given, *rig, context);
   plan.seconds_nest = watch.lap();
   say_what_to_know(design, options, plan);
+  if (std::string text = corrections_in_words(given); !text.empty()) plan.notes.push_back(std::move(text));
   return plan;
 }
 

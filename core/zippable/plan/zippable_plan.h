@@ -8,6 +8,7 @@
 #include "base/context.h"
 #include "fabrication/sheet/nesting.h"
 #include "zippable/plan/pieces/plan_pieces.h"
+#include "zippable/plan/plan_record.h"
 #include "zippable/plan/rig.h"
 #include "zippable/plan/pieces/seams.h"
 #include "zippable/plan/tape_template.h"
@@ -32,6 +33,7 @@ struct ZippablePlan {
   std::optional<GlueTabs> tabs;
   ClosureMarks closures;  // of cuts that the zipper does not close
   std::optional<Rig> rig;
+  double edges_moved_mm = 0;  // room for the zipper, and what makes up for errors of making
   double area_before_mm2 = 0;  // of the ribbon with room for the zipper, before splitting
   double width_mean_mm = 0;    // of the ribbon as designed: its area over the zipper's length
   std::vector<std::string> notes;
@@ -49,6 +51,9 @@ std::string fabric_name(int fabric);
 
 /// Throws Error: invalid_input (a parameter), cancelled.
 ZippablePlan plan_zippable(const FlatDesign& design, const PlanOptions& options, Context& context);
+
+/// How each triangle of `design` lies on its sheet.
+PlanRecord record_of(const FlatDesign& design, const ZippablePlan& plan);
 
 /// One page a sheet at exact size, everything in black. Throws Error{could_not_solve}: a sheet longer than 5.08 m.
 Bytes write_plan_pdf(const std::vector<CutSheet>& sheets);

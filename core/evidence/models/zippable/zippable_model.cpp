@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "evidence/models/zippable/zipper_place.h"
 #include "zippable/zipping/made_pattern.h"
 
 namespace formwright {
@@ -74,17 +75,8 @@ void ZippableModel::add_lengths(int object) {
     m.place.row(i) << low * own.marker_spacing_mm / pattern.zipper_mm, high * own.marker_spacing_mm / pattern.zipper_mm;
     m.measured(i, 0) = length.length_mm;
     m.sigma[i] = length.sigma_mm;
-    if (!length.flat || pattern.turn_of_triangle_rad.empty()) continue;
-    const auto piece_turn = [&](const ZipperMark& mark) {
-      const SeamPair& pair =
-          pattern.seams[static_cast<std::size_t>(zipper_place(pattern, mark.number * own.marker_spacing_mm).pair[0])];
-      const int vertex = mark.left ? pair.left : pair.right;
-      for (Eigen::Index f = 0; f < pattern.flat.F.rows(); ++f)
-        if ((pattern.flat.F.row(f).array() == vertex).any())
-          return pattern.turn_of_triangle_rad[static_cast<std::size_t>(f)];
-      return 0.0;
-    };
-    if (std::abs(piece_turn(length.from) - piece_turn(length.to)) > 1e-6)
+    if (length.flat && std::abs(piece_turn(pattern, length.from, own.marker_spacing_mm) -
+                                piece_turn(pattern, length.to, own.marker_spacing_mm)) > 1e-6)
       throw Error(ErrorCode::invalid_input, "object",
                   own.name + ": lengths.csv: the flat length from mark " + std::to_string(length.from.number) + " to " +
                       std::to_string(length.to.number) + " goes from one piece to another: measure within one piece.");
@@ -169,18 +161,6 @@ ZippableModel::Rest ZippableModel::at_rest(int object, const Eigen::VectorXd& u,
   }
 }
 
-ZippableModel::ZipperPlace ZippableModel::zipper_place(const RibbonPattern& pattern, double along_mm) {
-  const std::vector<SeamPair>& seams = pattern.seams;
-  // Where a stretch of the zipper ends the next one begins at the same length.
-  for (std::size_t i = 0; i + 1 < seams.size(); ++i) {
-    const double from = seams[i].along_mm, to = seams[i + 1].along_mm;
-    if (to > from && along_mm <= to)
-      return {{static_cast<int>(i), static_cast<int>(i + 1)}, std::clamp((along_mm - from) / (to - from), 0.0, 1.0)};
-  }
-  const int last = static_cast<int>(seams.size()) - 1;
-  return {{last, last}, 0};
-}
-
 Eigen::MatrixXd ZippableModel::lengths_at(int object, const Eigen::VectorXd& u, const Context& context) const {
   const MeasuredZippable& own = objects_[static_cast<std::size_t>(object)];
   const PreparedObject& prepared = prepared_[static_cast<std::size_t>(object)];
@@ -198,9 +178,7 @@ Eigen::MatrixXd ZippableModel::lengths_at(int object, const Eigen::VectorXd& u, 
   for (Eigen::Index i = 0; i < lengths.rows(); ++i) {
     const MeasuredLength& length = own.lengths[static_cast<std::size_t>(i)];
     const auto between = [&](const ZipperMark& mark, const auto& at) {
-      const ZipperPlace place = zipper_place(pattern, farther * mark.number * own.marker_spacing_mm);
-      return Vec3((1 - place.share) * at(pattern.seams[static_cast<std::size_t>(place.pair[0])]) +
-                  place.share * at(pattern.seams[static_cast<std::size_t>(place.pair[1])]));
+      return zipper_place(pattern, farther * mark.number * own.marker_spacing_mm).interpolate(pattern, at);
     };
     if (length.flat) {
       const auto on_side = [&](const ZipperMark& mark) {

@@ -42,11 +42,6 @@ class ZippableModel : public ForwardModel {
   MakingProfile profile_at(const Eigen::VectorXd& u) const;
 
  private:
-  /// Between two pairs of the zipper's vertices.
-  struct ZipperPlace {
-    std::array<int, 2> pair{};  // indices into RibbonPattern::seams
-    double share = 0;
-  };
   struct PreparedObject {
     std::array<RibbonPattern, 2> pattern;  // triangles as designed, and finer ones
     std::array<Positions, 2> start;        // at rest as the set-up says
@@ -63,7 +58,6 @@ class ZippableModel : public ForwardModel {
   bool finer_at(const Eigen::VectorXd& u) const;
   double value(const char* name, const Eigen::VectorXd& u) const;
   Rest at_rest(int object, const Eigen::VectorXd& u, const Context& context) const;
-  static ZipperPlace zipper_place(const RibbonPattern& pattern, double along_mm);
   Eigen::MatrixXd lengths_at(int object, const Eigen::VectorXd& u, const Context& context) const;
   Eigen::MatrixXd distances_at(int object, const Eigen::VectorXd& u, const Context& context) const;
   void add_lengths(int object);

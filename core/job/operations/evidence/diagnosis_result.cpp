@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "job/operations/evidence/diagnosis_result.h"
 
+#include <algorithm>
+
 #include "job/contract/model_input.h"
 
 namespace formwright {
@@ -72,6 +74,35 @@ OperationResult diagnosis_result(const OperationCall& call, const DiagnosisRepor
         info, to_bytes(info.name == "diagnosis.json" ? result.report.dump(2) + "\n" : diagnosis_page(report))));
   }
   return result;
+}
+
+std::vector<SeparatedPair> separated_pairs(SimulationBag& bag, const Diagnosis& diagnosis,
+                                           const std::vector<ProposedMeasurement>& proposals, Context& context) {
+  constexpr std::size_t max_pairs = 2;
+  constexpr double min_sigma = 1e-3;  // measurements without any noise distinguish everything
+  std::vector<NotSeparable> pairs = diagnosis.not_separable;
+  std::stable_sort(pairs.begin(), pairs.end(),
+                   [](const NotSeparable& a, const NotSeparable& b) { return a.similarity > b.similarity; });
+  if (pairs.size() > max_pairs) pairs.resize(max_pairs);
+  std::vector<SeparatedPair> separations;
+  for (const NotSeparable& pair : pairs) {
+    SeparatedPair separated{pair, "", pair.similarity};
+    const Separation found =
+        proposals.empty() ? Separation{}
+                          : best_separation(bag, diagnosis, pair, proposals,
+                                            std::max(diagnosis.noise.front().sigma, min_sigma), context);
+    if (found.proposal >= 0)
+      separated.what = proposals[static_cast<std::size_t>(found.proposal)].what,
+      separated.similarity = found.similarity;
+    separations.push_back(std::move(separated));
+  }
+  return separations;
+}
+
+std::string table_name(std::string name) {
+  for (char& c : name)
+    if (c == ',' || c == '"' || c == '\n' || c == '\r') c = '_';
+  return name;
 }
 
 }  // namespace formwright

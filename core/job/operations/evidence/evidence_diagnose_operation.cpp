@@ -48,12 +48,6 @@ std::vector<OutputInfo> evidence_diagnose_outputs() {
   return list;
 }
 
-std::string table_name(std::string name) {
-  for (char& c : name)
-    if (c == ',' || c == '"' || c == '\n' || c == '\r') c = '_';
-  return name;
-}
-
 /// Rows of residuals.csv, an object after the other.
 std::string residual_rows(const std::vector<FormedObject>& objects, const Predictions& calibrated,
                           const Predictions& extended, const std::vector<Eigen::VectorXd>& weights) {
@@ -147,24 +141,10 @@ OperationResult run_evidence_diagnose(const OperationCall& call, const DiagnoseO
   }
   DiagnosisReport report{model, diagnosis, {}, std::nullopt, {}, {}};
   if (!diagnosis.not_separable.empty()) {
-    // The most alike first; more than two would only confuse.
-    std::vector<NotSeparable> pairs = diagnosis.not_separable;
-    std::stable_sort(pairs.begin(), pairs.end(),
-                     [](const NotSeparable& a, const NotSeparable& b) { return a.similarity > b.similarity; });
-    if (pairs.size() > 2) pairs.resize(2);
     const auto span = call.context.span(0.85, 0.95, "Looking for a measurement that distinguishes them");
     std::vector<ProposedMeasurement> proposals;
     if (o.separate) proposals = proposed_measurements(model, options);
-    for (const NotSeparable& pair : pairs) {
-      SeparatedPair separated{pair, "", pair.similarity};
-      const Separation found = o.separate ? best_separation(bag, diagnosis, pair, proposals,
-                                                            std::max(diagnosis.noise.front().sigma, 1e-3), call.context)
-                                          : Separation{};
-      if (found.proposal >= 0)
-        separated.what = proposals[static_cast<std::size_t>(found.proposal)].what,
-        separated.similarity = found.similarity;
-      report.separations.push_back(std::move(separated));
-    }
+    report.separations = separated_pairs(bag, diagnosis, proposals, call.context);
   }
   std::optional<UnseenObjects> predicted;
   if (other) {

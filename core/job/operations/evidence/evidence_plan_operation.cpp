@@ -12,6 +12,7 @@
 #include "job/operations/evidence/evidence_input.h"
 #include "job/operations/evidence/evidence_operations.h"
 #include "job/operations/evidence/measuring_form.h"
+#include "job/operations/evidence/measuring_outlook.h"
 #include "job/operations/thermoform/thermoform_input.h"
 
 namespace formwright {
@@ -113,43 +114,9 @@ FormedObject object_of(const SimulationCall& simulation, const Simulated& simula
   return object;
 }
 
-std::string listed(const std::vector<std::string>& names) {
-  std::string text;
-  for (std::size_t i = 0; i < names.size(); ++i)
-    text += (i == 0 ? "" : i + 1 == names.size() ? " and " : ", ") + names[i];
-  return text;
-}
-
 std::string plan_sentence(const ForwardModel& model, const MeasuringPlan& plan, std::size_t measured) {
-  std::vector<std::string> shown, hidden;
-  for (const CauseOutlook& one : plan.causes)
-    (one.shows() ? shown : hidden).push_back("“" + model.causes()[static_cast<std::size_t>(one.cause)].label + "”");
   const bool with_rim = model.measurements().size() > 1;
-  const std::string marks = std::string(measured > 0 ? "The measured points and these marks" : "These marks") +
-                            (with_rim ? " and the rim's thickness" : "");
-  if (shown.empty()) return marks + " would show no cause at its usual strength: measure more, or more exactly.";
-  if (hidden.empty()) return marks + " would show every cause at its usual strength.";
-  return marks + " would show " + listed(shown) + " at usual strength. They would not show " + listed(hidden) + ".";
-}
-
-Json causes_json(const ForwardModel& model, const MeasuringPlan& plan) {
-  const auto finite = [](double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); };
-  Json list = Json::array();
-  for (const CauseOutlook& one : plan.causes) {
-    const Cause& cause = model.causes()[static_cast<std::size_t>(one.cause)];
-    list.push_back({{"name", cause.name},
-                    {"label", cause.label},
-                    {"unit", cause.unit},
-                    {"shows", one.shows()},
-                    {"usual_strength", one.usual_strength},
-                    {"min_visible_strength", finite(one.min_visible_strength)},
-                    {"best_visible_strength", finite(one.best_visible_strength)},
-                    {"closest_cause", one.closest_cause < 0
-                                          ? Json(nullptr)
-                                          : Json(model.causes()[static_cast<std::size_t>(one.closest_cause)].name)},
-                    {"similarity", one.similarity}});
-  }
-  return list;
+  return outlook_sentence(model, plan, std::string(measured > 0 ? "The measured points and these marks" : "These marks") + (with_rim ? " and the rim's thickness" : ""));
 }
 
 InputInfo measured_so_far_info() {
@@ -269,7 +236,7 @@ OperationResult run_evidence_plan_points(const OperationCall& call, const Json& 
                                     {"sheet_x_mm", place.sheet_mm.x()},
                                     {"sheet_y_mm", place.sheet_mm.y()},
                                     {"expected_mm", simulation.options.sheet_thickness_mm}});
-  result.report["causes"] = causes_json(model, plan);
+  result.report["causes"] = outlook_json(model, plan);
   result.report["information_nats"] = plan.information.empty() ? plan.information_of_measured : plan.information.back();
   result.report["information_of_measured_nats"] = plan.information_of_measured;
   result.report["information_of_all_nats"] = plan.information_of_all;

@@ -7,20 +7,12 @@
 #include "job/contract/model_input.h"
 #include "job/contract/operation_options.h"
 #include "job/operations/zippable/zippable_operation.h"
+#include "job/operations/zippable/zippable_inputs.h"
 #include "zippable/plan/assembly_sheet.h"
 #include "zippable/plan/zippable_plan.h"
 
 namespace formwright {
 namespace {
-
-std::vector<InputInfo> zippable_plan_inputs() {
-  InputInfo design;
-  design.name = "design";
-  design.label = "Design";
-  design.help = "The design.json that zippable-design wrote.";
-  design.extensions = {"json"};
-  return {design};
-}
 
 std::vector<OutputInfo> zippable_plan_outputs() {
   return {
@@ -41,7 +33,10 @@ std::vector<OutputInfo> zippable_plan_outputs() {
       {"rig.pdf", "application/pdf", "Rig, PDF", "The boards of the fastening rig at true size, one page for each.",
        true},
       {"assembly.pdf", "application/pdf", "Assembly sheet",
-       "Instructions with pictures: what is needed and what is joined to what, step by step.", true}};
+       "Instructions with pictures: what is needed and what is joined to what, step by step.", true},
+      {"plan.json", "application/json", "For measuring",
+       "How each piece was turned on its sheet, and the spacing of the marks: keep it beside the design to diagnose what was sewn.",
+       true}};
 }
 
 std::vector<ReportField> zippable_plan_report_fields() {
@@ -61,7 +56,7 @@ std::vector<ReportField> zippable_plan_report_fields() {
       {"teeth_width_mm", "Teeth width", "mm", "Width of the closed row of teeth."},
       {"gap_mm", "Gap", "mm", "Distance between teeth and fabric."},
       {"offset_mm", "Offset", "mm",
-       "How far each edge is moved to make room for the zipper: half the teeth plus the gap."},
+       "How far each edge is moved inwards: half the teeth plus the gap, and what makes up for errors of making."},
       {"offset_mean_mm", "Mean offset", "mm", "Mean distance by which the edges were moved."},
       {"narrow_places", "Narrow places", "",
        "Number of corners where the ribbon is too narrow to move the edge as far as the zipper needs."},
@@ -156,10 +151,10 @@ void report_lengths(Json& report, const FlatDesign& design, const ZippablePlan& 
   report["tape_width_mm"] = plan.zipper.tape_width_mm;
   report["teeth_width_mm"] = plan.zipper.teeth_width_mm;
   report["gap_mm"] = plan.zipper.gap_mm;
-  report["offset_mm"] = plan.zipper.offset_mm();
+  report["offset_mm"] = plan.edges_moved_mm;
   report["offset_mean_mm"] = ribbon.offset_mean_mm;
   report["narrow_places"] = ribbon.narrow_samples;
-  report["min_offset_mm"] = ribbon.min_share * plan.zipper.offset_mm();
+  report["min_offset_mm"] = ribbon.min_share * plan.edges_moved_mm;
   report["binormal_share"] = ribbon.binormal_share;
   report["sides_made_equal"] = ribbon.sides_made_equal;
   report["shear_max_mm"] = ribbon.shear_max_mm;
@@ -237,7 +232,7 @@ void report_pieces(Json& report, const ZippablePlan& plan, const PlanOptions& op
   report["area_after_mm2"] = area;
   report["outline_area_mm2"] = outline_area;
   report["cut_length_mm"] = cut_mm;
-  report["kerf_mm"] = options.kerf_mm;
+  report["kerf_mm"] = plan.sheets.empty() ? options.kerf_mm : plan.sheets.front().kerf_mm;
 }
 
 void report_closures(Json& report, const ZippablePlan& plan) {
@@ -282,7 +277,8 @@ Bytes sheets_zip(const ZippablePlan& plan, const Context& context) {
   return pack_files(views, context);
 }
 
-OperationResult run_zippable_plan(const OperationCall& call, const PlanOptions& options) {
+OperationResult run_zippable_plan(const OperationCall& call, const Json& given) {
+  const auto options = read_parameters<PlanOptions>(with_making_profile(call, given));
   Context& context = call.context;
   Stopwatch watch;
   context.progress(0, "Reading the design");
@@ -304,6 +300,7 @@ OperationResult run_zippable_plan(const OperationCall& call, const PlanOptions& 
     context.check_cancelled();
   };
   add("plan.svg", [&] { return write_svg(all); });
+  add("plan.json", [&] { return to_bytes(write_plan_record(record_of(design, plan))); });
   add("plan.dxf", [&] { return write_dxf(all); });
   // What is longer than any PDF page is still a job for a roll cutter.
   const bool pages_fit = std::max(options.bed_x_mm, options.bed_y_mm) <= longest_pdf_page_mm;
@@ -348,10 +345,10 @@ Operation zippable_plan_operation() {
   operation.title = "Zippable plan";
   operation.summary =
       "Turns the design of a zippable into sheets to cut, with numbered markers for attaching the zipper.";
-  operation.inputs = zippable_plan_inputs();
+  operation.inputs = {flat_design_info(), making_profile_info()};
   operation.outputs = zippable_plan_outputs();
   operation.report = zippable_plan_report_fields();
-  take_options<PlanOptions>(operation, run_zippable_plan);
+  take_mergeable_options<PlanOptions>(operation, run_zippable_plan);
   return operation;
 }
 

@@ -3,21 +3,14 @@
 
 #include "job/contract/model_input.h"
 #include "job/contract/operation_options.h"
+#include "job/operations/zippable/zippable_inputs.h"
 #include "job/operations/zippable/zippable_operation.h"
+#include "zippable/plan/plan_record.h"
 #include "zippable/zipping/cloth_presets.h"
 #include "zippable/zipping/zipping_files.h"
 
 namespace formwright {
 namespace {
-
-InputInfo design_input() {
-  InputInfo info;
-  info.name = "design";
-  info.label = "Design";
-  info.help = "The design.json that zippable-design wrote: the flat ribbon, its zipper and the intended shape.";
-  info.extensions = {"json"};
-  return info;
-}
 
 std::vector<OutputInfo> zippable_simulate_outputs() {
   return {{"zipped.ply", "application/x-ply", "Zipped cloth",
@@ -88,8 +81,13 @@ const char* outcome_name(ZippingOutcome outcome) {
   return "not_settled";
 }
 
-OperationResult run_zippable_simulate(const OperationCall& call, const ZippingOptions& options) {
-  const RibbonDesign design = ribbon_of(read_flat_design(*call.inputs.at("design").bytes));
+OperationResult run_zippable_simulate(const OperationCall& call, const Json& given) {
+  const auto options = read_parameters<ZippingOptions>(with_making_profile(call, given));
+  const FlatDesign flat = read_flat_design(*call.inputs.at("design").bytes);
+  RibbonDesign design = ribbon_of(flat);
+  if (const auto plan = call.inputs.find("plan"); plan != call.inputs.end())
+    design.turn_of_triangle_rad =
+        read_plan_record(*plan->second.bytes, static_cast<std::size_t>(flat.F.rows()), "plan").turn_of_triangle_rad;
   ZippingResult zipped;
   {
     const auto span = call.context.span(0, 0.97, "Zipping");
@@ -146,11 +144,11 @@ Operation zippable_simulate_operation() {
   operation.name = "zippable-simulate";
   operation.title = "Will it zip?";
   operation.summary = "Simulates the ribbon as cloth while it is zipped up, and compares the result with the design.";
-  operation.inputs = {design_input()};
+  operation.inputs = {flat_design_info(), plan_record_info(), making_profile_info()};
   operation.outputs = zippable_simulate_outputs();
   operation.report = zippable_simulate_report_fields();
   operation.presets = {cloth_presets()};
-  take_options<ZippingOptions>(operation, run_zippable_simulate);
+  take_mergeable_options<ZippingOptions>(operation, run_zippable_simulate);
   return operation;
 }
 

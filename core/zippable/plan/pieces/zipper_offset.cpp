@@ -80,7 +80,7 @@ using AreaPair = std::pair<double, double>;
 void smooth_shares(const FlatDesign& design, double offset_mm, std::vector<double>& shares) {
   for (const auto& piece : design.pieces) {
     const auto limit = [&](int at, int beside) {
-      const double rise = 0.1 * std::abs(design.arclength_mm[at] - design.arclength_mm[beside]) / offset_mm;
+      const double rise = 0.1 * std::abs(design.arclength_mm[at] - design.arclength_mm[beside]) / std::abs(offset_mm);
       shares[at] = std::min(shares[at], shares[beside] + rise);
     };
     for (std::size_t k = 1; k < piece.size(); ++k) limit(piece[k], piece[k - 1]);
@@ -253,16 +253,19 @@ OffsetRibbon offset_ribbon(const FlatDesign& design, ZipperOffset method, double
   OffsetRibbon ribbon;
   ribbon.offset_share.assign(design.left_vertex.size(), 1.0);
   for (const FlatVertex& v : design.boundary) ribbon.flat_mm.push_back(v.flat_mm);
-  if (offset_mm > 0) {
+  if (offset_mm < 0 && method == ZipperOffset::gluing)
+    throw Error(ErrorCode::invalid_input, "seam_take_up_mm",
+                "For gluing the edges cannot be moved outwards: choose sewing, a wider gap, or less cloth lost in seams.");
+  if (offset_mm != 0) {
     if (method == ZipperOffset::sewing) move_in_plane(design, offset_mm, ribbon);
     else move_in_space(design, offset_mm, ribbon);
   }
   ribbon.narrow_mm = narrow_length_mm(design, ribbon.offset_share);
   for (const double share : ribbon.offset_share)
     ribbon.offset_mean_mm += offset_mm * share / static_cast<double>(ribbon.offset_share.size());
-  if (ribbon.offset_mean_mm < 0.5 * offset_mm) {
+  if (std::abs(ribbon.offset_mean_mm) < 0.5 * std::abs(offset_mm)) {
     throw Error(ErrorCode::invalid_input, "coil",
-                "The ribbon is too narrow for this zipper, whose sides need " + with_decimals(2 * offset_mm, 1) +
+                "The ribbon is too narrow for this zipper, whose sides need " + with_decimals(2 * std::abs(offset_mm), 1) +
                     " mm together: choose a smaller coil or a wider ribbon.");
   }
   for (int v = 0; v < design.vertex_count(); ++v)

@@ -35,10 +35,12 @@ Zipped zip_up(const FlatDesign& design, const HiddenMaking& making, Context& con
 template <class At>
 Vec3 at_length(const std::vector<SeamPair>& seams, double along_mm, const At& at) {
   std::size_t after = 1;
-  while (after + 1 < seams.size() && (seams[after].along_mm < along_mm || seams[after].along_mm <= seams[after - 1].along_mm))
+  while (after + 1 < seams.size() &&
+         (seams[after].along_mm < along_mm || seams[after].along_mm <= seams[after - 1].along_mm))
     ++after;
   const SeamPair &a = seams[after - 1], &b = seams[after];
-  const double share = b.along_mm > a.along_mm ? std::clamp((along_mm - a.along_mm) / (b.along_mm - a.along_mm), 0.0, 1.0) : 0;
+  const double share =
+      b.along_mm > a.along_mm ? std::clamp((along_mm - a.along_mm) / (b.along_mm - a.along_mm), 0.0, 1.0) : 0;
   return (1 - share) * at(a) + share * at(b);
 }
 
@@ -53,8 +55,8 @@ ZippingOptions usual_cloth() {
 }
 
 std::vector<std::string> zippable_cause_names() {
-  return {"plan_scale",   "cloth_stretch", "cloth_bias", "kerf",        "zipper_gap", "seam_take_up",
-          "stuffing",     "gravity",       "marks_scale", "tape_scale", "stiff_zipper"};
+  return {"plan_scale", "cloth_stretch", "cloth_bias",  "kerf",       "zipper_gap",  "seam_take_up",
+          "stuffing",   "gravity",       "marks_scale", "tape_scale", "stiff_zipper"};
 }
 
 void hide_cause(const std::string& cause, double level, double size_mm, double width_mm, std::mt19937& random,
@@ -63,7 +65,8 @@ void hide_cause(const std::string& cause, double level, double size_mm, double w
   const double some = level * std::uniform_real_distribution<double>(0.8, 1.2)(random);
   ZippingOptions& o = making.options;
   if (cause == "plan_scale") o.plan_scale += 0.02 * sign * some;
-  else if (cause == "cloth_stretch") o.cloth_stretch_along += 0.04 * sign * some, o.cloth_stretch_across -= 0.02 * sign * some;
+  else if (cause == "cloth_stretch")
+    o.cloth_stretch_along += 0.04 * sign * some, o.cloth_stretch_across -= 0.02 * sign * some;
   else if (cause == "cloth_bias") o.cloth_bias += 0.04 * sign * some;
   else if (cause == "kerf") o.more_kerf_mm += 1.2 * some;
   else if (cause == "zipper_gap") o.more_gap_mm += 1.5 * some;
@@ -113,7 +116,9 @@ MeasuredZippable make_zippable(const std::string& name, const FlatDesign& design
     const auto middle = [&](const SeamPair& pair) {
       return Vec3(0.5 * (zipped.x.row(pair.left) + zipped.x.row(pair.right)).transpose());
     };
-    add(length, (at_length(seams, along(length.from.number), middle) - at_length(seams, along(length.to.number), middle)).norm());
+    add(length,
+        (at_length(seams, along(length.from.number), middle) - at_length(seams, along(length.to.number), middle))
+            .norm());
   }
   const auto side = [&](bool left) {
     return [&, left](const SeamPair& pair) {
@@ -136,7 +141,8 @@ MeasuredZippable make_zippable(const std::string& name, const FlatDesign& design
   if (observation.scan_points == 0) return object;
   // The outside, from anywhere, as a scanner sees it.
   object.scan_mm.resize(observation.scan_points, 3);
-  const Eigen::Quaterniond turn(Eigen::Vector4d(normal(random), normal(random), normal(random), normal(random)).normalized());
+  const Eigen::Quaterniond turn(
+      Eigen::Vector4d(normal(random), normal(random), normal(random), normal(random)).normalized());
   const Triangles& F = zipped.designed.flat.F;
   std::vector<double> areas;
   for (Eigen::Index f = 0; f < F.rows(); ++f) {
@@ -149,9 +155,10 @@ MeasuredZippable make_zippable(const std::string& name, const FlatDesign& design
     const int f = face(random);
     double s = uniform(random), t = uniform(random);
     if (s + t > 1) s = 1 - s, t = 1 - t;
-    const Vec3 p = zipped.x.row(F(f, 0)), a = zipped.x.row(F(f, 1)).transpose() - p, b = zipped.x.row(F(f, 2)).transpose() - p,
-               n = a.cross(b).normalized();
-    const Vec3 seen = p + s * a + t * b + (0.5 * object.setup.thickness_mm + observation.scan_sigma_mm * normal(random)) * n;
+    const Vec3 p = zipped.x.row(F(f, 0)), a = zipped.x.row(F(f, 1)).transpose() - p,
+               b = zipped.x.row(F(f, 2)).transpose() - p, n = a.cross(b).normalized();
+    const Vec3 seen =
+        p + s * a + t * b + (0.5 * object.setup.thickness_mm + observation.scan_sigma_mm * normal(random)) * n;
     object.scan_mm.row(i) = ((1 + making.tape_scale) * (turn * seen) + Vec3(100, -50, 20)).transpose();
   }
   return object;

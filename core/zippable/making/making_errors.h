@@ -21,20 +21,23 @@ struct MakingErrors {
           .slider(-0.05, 0.05)
           .group(group_title)
           .advanced(),
-      parameter("cloth_stretch_along", &MakingErrors::cloth_stretch_along, "Cloth longer along its grain", unit::none,
-                -0.3, 0.3,
-                "0.02 where the cloth is 2 % longer, along x of the sheet, once it is cut; less than 0 where it shrinks. A plan makes up for it, a simulation shows it.")
+      parameter(
+          "cloth_stretch_along", &MakingErrors::cloth_stretch_along, "Cloth longer along its grain", unit::none, -0.3,
+          0.3,
+          "0.02 where the cloth is 2 % longer, along x of the sheet, once it is cut; less than 0 where it shrinks. A plan makes up for it, a simulation shows it.")
           .slider(-0.1, 0.1)
           .group(group_title)
           .advanced(),
-      parameter("cloth_stretch_across", &MakingErrors::cloth_stretch_across, "Cloth longer across its grain",
-                unit::none, -0.3, 0.3,
-                "0.02 where the cloth is 2 % longer, along y of the sheet, once it is cut; less than 0 where it shrinks. A plan makes up for it, a simulation shows it.")
+      parameter(
+          "cloth_stretch_across", &MakingErrors::cloth_stretch_across, "Cloth longer across its grain", unit::none,
+          -0.3, 0.3,
+          "0.02 where the cloth is 2 % longer, along y of the sheet, once it is cut; less than 0 where it shrinks. A plan makes up for it, a simulation shows it.")
           .slider(-0.1, 0.1)
           .group(group_title)
           .advanced(),
-      parameter("cloth_bias", &MakingErrors::cloth_bias, "Cloth pulled askew", unit::none, -0.2, 0.2,
-                "Half of the angle, in radians, by which a right angle between x and y of the sheet closes once it is cut. A plan makes up for it, a simulation shows it.")
+      parameter(
+          "cloth_bias", &MakingErrors::cloth_bias, "Cloth pulled askew", unit::none, -0.2, 0.2,
+          "Half of the angle, in radians, by which a right angle between x and y of the sheet closes once it is cut. A plan makes up for it, a simulation shows it.")
           .slider(-0.1, 0.1)
           .group(group_title)
           .advanced(),
@@ -43,13 +46,15 @@ struct MakingErrors {
           .slider(-1, 1)
           .group(group_title)
           .advanced(),
-      parameter("more_gap_mm", &MakingErrors::more_gap_mm, "Zipper wider than planned", unit::mm, -10, 10,
-                "How much wider the closed zipper holds both edges apart than the plan allows for. A plan makes up for it, a simulation shows it.")
+      parameter(
+          "more_gap_mm", &MakingErrors::more_gap_mm, "Zipper wider than planned", unit::mm, -10, 10,
+          "How much wider the closed zipper holds both edges apart than the plan allows for. A plan makes up for it, a simulation shows it.")
           .slider(-4, 4)
           .group(group_title)
           .advanced(),
-      parameter("seam_take_up_mm", &MakingErrors::seam_take_up_mm, "Cloth lost in seams", unit::mm, -10, 10,
-                "Width of cloth that disappears under the zipper at each of both edges beyond the plan. A plan makes up for it, a simulation shows it.")
+      parameter(
+          "seam_take_up_mm", &MakingErrors::seam_take_up_mm, "Cloth lost in seams", unit::mm, -10, 10,
+          "Width of cloth that disappears under the zipper at each of both edges beyond the plan. A plan makes up for it, a simulation shows it.")
           .slider(0, 5)
           .group(group_title)
           .advanced()};

@@ -27,7 +27,9 @@ std::string write_plan_record(const PlanRecord& record) {
 }
 
 PlanRecord read_plan_record(ByteView bytes, std::size_t triangles, const std::string& where) {
-  const auto refuse = [&](const std::string& sentence) { throw Error(ErrorCode::invalid_input, where, "plan.json: " + sentence); };
+  const auto refuse = [&](const std::string& sentence) {
+    throw Error(ErrorCode::invalid_input, where, "plan.json: " + sentence);
+  };
   const Json json = parse_json_text(as_text(bytes));
   if (!json.is_object() || json.value("format", Json()) != record_format || json.value("version", Json()) != 1)
     refuse("this is not what zippable-plan wrote: export plan.json again.");
@@ -39,7 +41,8 @@ PlanRecord read_plan_record(ByteView bytes, std::size_t triangles, const std::st
   if (!turns.is_array() || turns.size() != triangles)
     refuse("it belongs to another design: give the plan.json of this design.json.");
   for (const Json& turn : turns) {
-    if (!turn.is_number() || !std::isfinite(turn.get<double>())) refuse("a turn is not a number: export plan.json again.");
+    if (!turn.is_number() || !std::isfinite(turn.get<double>()))
+      refuse("a turn is not a number: export plan.json again.");
     record.turn_of_triangle_rad.push_back(turn.get<double>() / degrees_per_radian);
   }
   return record;

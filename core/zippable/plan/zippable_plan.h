@@ -33,7 +33,7 @@ struct ZippablePlan {
   std::optional<GlueTabs> tabs;
   ClosureMarks closures;  // of cuts that the zipper does not close
   std::optional<Rig> rig;
-  double edges_moved_mm = 0;  // room for the zipper, and what makes up for errors of making
+  double edges_moved_mm = 0;   // room for the zipper, and what makes up for errors of making
   double area_before_mm2 = 0;  // of the ribbon with room for the zipper, before splitting
   double width_mean_mm = 0;    // of the ribbon as designed: its area over the zipper's length
   std::vector<std::string> notes;

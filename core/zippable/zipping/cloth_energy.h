@@ -17,7 +17,7 @@ namespace formwright {
 struct ClothMaterial {
   double stretch_n_per_mm = 10;  // Young's modulus times thickness
   double poisson_ratio = 0.3;
-  double bending_n_mm = 0.2;  // D: energy D k^2 / 2 an area of a cylinder of curvature k
+  double bending_n_mm = 0.2;        // D: energy D k^2 / 2 an area of a cylinder of curvature k
   double zipper_bending_n_mm2 = 0;  // B: energy B k^2 / 2 a length of zipper
 };
 

@@ -6,8 +6,9 @@
 namespace formwright {
 
 /// The ribbon as it is sewn when the plan of `pattern`, which is as designed, was made with these errors: edges moved
-/// in `flat` (by less where a triangle would lose nine tenths of its area), the cloth's own change in `cloth_change`. Zipper and predicted places stay. Throws
-/// Error{could_not_solve} where the cloth is pulled so far askew that it has no area.
+/// in `flat` (by less where a triangle would lose nine tenths of its area), the cloth's own change in `cloth_change`.
+/// Zipper and predicted places stay. Throws Error{could_not_solve} where the cloth is pulled so far askew that it has
+/// no area.
 RibbonPattern made_pattern(const RibbonPattern& pattern, const MakingErrors& errors);
 
 /// Both ends of every edge on the ribbon's border, the cloth on its left.

@@ -24,7 +24,8 @@ class Refinement {
  public:
   Refinement(const std::vector<RibbonEdgePlace>& places, const Triangles& triangles) : places_(places) {
     for (Eigen::Index f = 0; f < triangles.rows(); ++f)
-      faces_.push_back({triangles(f, 0), triangles(f, 1), triangles(f, 2)}), design_face_.push_back(static_cast<int>(f));
+      faces_.push_back({triangles(f, 0), triangles(f, 1), triangles(f, 2)}),
+          design_face_.push_back(static_cast<int>(f));
     for (int f = 0; f < static_cast<int>(faces_.size()); ++f)
       for (int k = 0; k < 3; ++k) attach(faces_[f][k], faces_[f][(k + 1) % 3], f);
     find_mates();

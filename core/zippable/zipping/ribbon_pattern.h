@@ -26,18 +26,18 @@ struct ClosurePair {
 };
 
 struct RibbonPattern {
-  TriangleMesh flat;                  // z = 0; oriented like the surface: its outside is up
-  Positions predicted_mm;             // per vertex, as designed; no triangle is stretched by it
-  std::vector<SeamPair> seams;        // in the order of the slider
-  std::vector<ClosurePair> closures;  // cut by cut, along each
-  std::vector<double> closed_at_mm;   // per triangle: where the slider is when it has passed all around it
-  std::vector<int> triangle_of_design;  // per triangle: the one of the design that it is a part of
+  TriangleMesh flat;                         // z = 0; oriented like the surface: its outside is up
+  Positions predicted_mm;                    // per vertex, as designed; no triangle is stretched by it
+  std::vector<SeamPair> seams;               // in the order of the slider
+  std::vector<ClosurePair> closures;         // cut by cut, along each
+  std::vector<double> closed_at_mm;          // per triangle: where the slider is when it has passed all around it
+  std::vector<int> triangle_of_design;       // per triangle: the one of the design that it is a part of
   std::vector<double> turn_of_triangle_rad;  // per triangle: from `flat` to the sheet that it is cut from
   /// Per triangle, in the plane of `flat`: from there to the cloth that lies free. Empty where all is as designed.
   std::vector<Eigen::Matrix2d> cloth_change;
-  double zipper_mm = 0;               // length of one side
-  double width_mm = 0;                // mean width: area over length
-  double size_mm = 0;                 // largest dimension of the predicted shape
+  double zipper_mm = 0;  // length of one side
+  double width_mm = 0;   // mean width: area over length
+  double size_mm = 0;    // largest dimension of the predicted shape
 };
 
 /// A place of the ribbon's edge before pairs are formed.

@@ -68,7 +68,8 @@ class Zipping {
     x_ = shape;
     system_.whole_hessian = whole_hessian;
     for (std::size_t i = 0; i < system_.pairs().size(); ++i) begin_thread(i), system_.threads[i].length_mm = 0;
-    system_.anchor_n_per_mm3 = (whole_hessian ? 1e-2 : 1.0) * anchor * options_.stretch_n_per_mm / (pattern_.width_mm * pattern_.width_mm);
+    system_.anchor_n_per_mm3 =
+        (whole_hessian ? 1e-2 : 1.0) * anchor * options_.stretch_n_per_mm / (pattern_.width_mm * pattern_.width_mm);
     settle(0, 1);
   }
 
@@ -184,9 +185,10 @@ class Zipping {
   /// nothing.
   void hang() {
     constexpr double newton_per_gram = 9.81e-3, m2_per_mm2 = 1e-6;
-    const auto hand = std::min_element(pattern_.seams.begin(), pattern_.seams.end(), [&](const SeamPair& a, const SeamPair& b) {
-      return std::abs(a.along_mm - options_.hung_at_mm) < std::abs(b.along_mm - options_.hung_at_mm);
-    });
+    const auto hand =
+        std::min_element(pattern_.seams.begin(), pattern_.seams.end(), [&](const SeamPair& a, const SeamPair& b) {
+          return std::abs(a.along_mm - options_.hung_at_mm) < std::abs(b.along_mm - options_.hung_at_mm);
+        });
     const Eigen::VectorXd& area = system_.vertex_area_mm2();
     const Eigen::RowVector3d place = 0.5 * (x_.row(hand->left) + x_.row(hand->right)),
                              down = area.transpose() * x_ / area.sum() - place;
@@ -336,7 +338,8 @@ ZippedAtRest zipped_at_rest(const RibbonPattern& designed, const ZippingOptions&
   zipping.rest_from(start, true);
   if (!zipping.x().allFinite())
     throw Error(ErrorCode::could_not_solve, "", "The zipped cloth has no finite place there.");
-  return {zipping.x(), zipping.settled, zipping.rounds, zipping.system().iterations(), zipping.system().energies(zipping.x())};
+  return {zipping.x(), zipping.settled, zipping.rounds, zipping.system().iterations(),
+          zipping.system().energies(zipping.x())};
 }
 
 ZippingResult simulate_zipping(const RibbonDesign& design, const ZippingOptions& options, Context& context) {

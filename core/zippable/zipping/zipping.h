@@ -34,75 +34,81 @@ struct ZippingOptions : MakingErrors {
   int frames = 40;
   double tolerance_percent = 2;
 
-  static constexpr auto parameters = std::tuple_cat(std::tuple{
-      parameter("thickness_mm", &ZippingOptions::thickness_mm, "Cloth thickness", unit::mm, 0.01, 20,
-                "Thickness of the cloth. It sets the bending stiffness unless that is given; thicker cloth bends less.")
-          .slider(0.1, 3)
-          .group("Cloth"),
-      parameter("stretch_n_per_mm", &ZippingOptions::stretch_n_per_mm, "Stretch stiffness", unit::newton_per_mm, 0.01,
-                1e5, "Force that would stretch a strip 1 mm wide to twice its length. Cotton about 10, felt about 1.")
-          .slider(0.5, 100)
-          .group("Cloth"),
-      parameter(
-          "bending_n_mm", &ZippingOptions::bending_n_mm, "Bending stiffness", unit::newton_mm, 1e-6, 1e6,
-          "Moment that bends a strip 1 mm wide to a radius of 1 mm. Cotton about 0.01. Automatic: computed from thickness and stretch stiffness as if the cloth were solid.")
-          .slider(0.001, 10)
-          .group("Cloth"),
-      parameter("stuffing_pressure_pa", &ZippingOptions::stuffing_pressure_pa, "Stuffing pressure", unit::pascal, 0,
-                1e6, "Pressure of the stuffing on the inside of the parts that are already closed. 0: not stuffed.")
-          .slider(0, 1000)
-          .group("Cloth"),
-      parameter("zipper_bending_n_mm2", &ZippingOptions::zipper_bending_n_mm2, "Zipper's bending stiffness",
-                unit::newton_mm2, 0, 1e6,
-                "Bending stiffness of the closed zipper, a moment times a radius. 0: the seams bend as freely as the cloth.")
-          .slider(0, 100)
-          .group("Cloth")
-          .advanced(),
-      parameter("weight_g_per_m2", &ZippingOptions::weight_g_per_m2, "Weight of the cloth", unit::gram_per_m2, 0, 1e5,
-                "Weight that pulls the closed shape down while it hangs from one place of the zipper. 0: no weight.")
-          .slider(0, 1000)
-          .group("Cloth")
-          .advanced(),
-      parameter("hung_at_mm", &ZippingOptions::hung_at_mm, "Hung at", unit::mm, 0, 1e6,
-                "Where the closed shape hangs: length along the zipper from its start. Counts only with a weight.")
-          .slider(0, 2000)
-          .group("Cloth")
-          .advanced(),
-      parameter(
-          "hold_open_percent", &ZippingOptions::hold_open_percent, "Held open", unit::percent, 0, 500,
-          "Pressure that holds the closed part open from inside while it is zipped, in percent of stretch stiffness divided by size; it is released at the end. Automatic: tries 40, 0 and 15 until the shape is reached.")
-          .slider(0, 100)
-          .group("Simulation"),
-      parameter(
-          "press_out_percent", &ZippingOptions::press_out_percent, "Pressed out", unit::percent, 0, 5000,
-          "Pressure that pushes tucked-in corners out from inside once after zipping, as hands do, in the same unit as Held open. 0: never.")
-          .slider(0, 1000)
-          .group("Simulation"),
-      parameter(
-          "edge_mm", &ZippingOptions::edge_mm, "Longest edge", unit::mm, 0, 1000,
-          "Triangles with longer edges than this are split in half, for a more accurate simulation that takes longer. 0: keeps the triangles of the design.")
-          .slider(1, 20)
-          .group("Simulation"),
-      parameter(
-          "steps", &ZippingOptions::steps, "Steps", unit::none, 20, 20000,
-          "Number of steps in which the slider moves from one end of the zipper to the other. More are more exact and take longer.")
-          .slider(100, 1000)
-          .group("Simulation"),
-      parameter(
-          "seed", &ZippingOptions::seed, "Random seed", unit::none, 0, 1e9,
-          "Number that selects the small random bumps, a thousandth of the ribbon width high, that let the flat cloth buckle. Another number tries another course of zipping.")
-          .slider(0, 20)
-          .group("Simulation")
-          .advanced(),
-      parameter("frames", &ZippingOptions::frames, "Frames", unit::none, 2, 500, "Number of pictures in the animation.")
-          .slider(10, 100)
-          .group("Simulation")
-          .advanced(),
-      parameter(
-          "tolerance_percent", &ZippingOptions::tolerance_percent, "Tolerance", unit::percent, 0.01, 50,
-          "Largest distance from the design, in percent of the object's size, within which 95 % of the cloth must lie to count as the intended shape.")
-          .slider(0.5, 10)
-          .group("Simulation")},
+  static constexpr auto parameters = std::tuple_cat(
+      std::tuple{
+          parameter(
+              "thickness_mm", &ZippingOptions::thickness_mm, "Cloth thickness", unit::mm, 0.01, 20,
+              "Thickness of the cloth. It sets the bending stiffness unless that is given; thicker cloth bends less.")
+              .slider(0.1, 3)
+              .group("Cloth"),
+          parameter("stretch_n_per_mm", &ZippingOptions::stretch_n_per_mm, "Stretch stiffness", unit::newton_per_mm,
+                    0.01, 1e5,
+                    "Force that would stretch a strip 1 mm wide to twice its length. Cotton about 10, felt about 1.")
+              .slider(0.5, 100)
+              .group("Cloth"),
+          parameter(
+              "bending_n_mm", &ZippingOptions::bending_n_mm, "Bending stiffness", unit::newton_mm, 1e-6, 1e6,
+              "Moment that bends a strip 1 mm wide to a radius of 1 mm. Cotton about 0.01. Automatic: computed from thickness and stretch stiffness as if the cloth were solid.")
+              .slider(0.001, 10)
+              .group("Cloth"),
+          parameter("stuffing_pressure_pa", &ZippingOptions::stuffing_pressure_pa, "Stuffing pressure", unit::pascal, 0,
+                    1e6, "Pressure of the stuffing on the inside of the parts that are already closed. 0: not stuffed.")
+              .slider(0, 1000)
+              .group("Cloth"),
+          parameter(
+              "zipper_bending_n_mm2", &ZippingOptions::zipper_bending_n_mm2, "Zipper's bending stiffness",
+              unit::newton_mm2, 0, 1e6,
+              "Bending stiffness of the closed zipper, a moment times a radius. 0: the seams bend as freely as the cloth.")
+              .slider(0, 100)
+              .group("Cloth")
+              .advanced(),
+          parameter(
+              "weight_g_per_m2", &ZippingOptions::weight_g_per_m2, "Weight of the cloth", unit::gram_per_m2, 0, 1e5,
+              "Weight that pulls the closed shape down while it hangs from one place of the zipper. 0: no weight.")
+              .slider(0, 1000)
+              .group("Cloth")
+              .advanced(),
+          parameter("hung_at_mm", &ZippingOptions::hung_at_mm, "Hung at", unit::mm, 0, 1e6,
+                    "Where the closed shape hangs: length along the zipper from its start. Counts only with a weight.")
+              .slider(0, 2000)
+              .group("Cloth")
+              .advanced(),
+          parameter(
+              "hold_open_percent", &ZippingOptions::hold_open_percent, "Held open", unit::percent, 0, 500,
+              "Pressure that holds the closed part open from inside while it is zipped, in percent of stretch stiffness divided by size; it is released at the end. Automatic: tries 40, 0 and 15 until the shape is reached.")
+              .slider(0, 100)
+              .group("Simulation"),
+          parameter(
+              "press_out_percent", &ZippingOptions::press_out_percent, "Pressed out", unit::percent, 0, 5000,
+              "Pressure that pushes tucked-in corners out from inside once after zipping, as hands do, in the same unit as Held open. 0: never.")
+              .slider(0, 1000)
+              .group("Simulation"),
+          parameter(
+              "edge_mm", &ZippingOptions::edge_mm, "Longest edge", unit::mm, 0, 1000,
+              "Triangles with longer edges than this are split in half, for a more accurate simulation that takes longer. 0: keeps the triangles of the design.")
+              .slider(1, 20)
+              .group("Simulation"),
+          parameter(
+              "steps", &ZippingOptions::steps, "Steps", unit::none, 20, 20000,
+              "Number of steps in which the slider moves from one end of the zipper to the other. More are more exact and take longer.")
+              .slider(100, 1000)
+              .group("Simulation"),
+          parameter(
+              "seed", &ZippingOptions::seed, "Random seed", unit::none, 0, 1e9,
+              "Number that selects the small random bumps, a thousandth of the ribbon width high, that let the flat cloth buckle. Another number tries another course of zipping.")
+              .slider(0, 20)
+              .group("Simulation")
+              .advanced(),
+          parameter("frames", &ZippingOptions::frames, "Frames", unit::none, 2, 500,
+                    "Number of pictures in the animation.")
+              .slider(10, 100)
+              .group("Simulation")
+              .advanced(),
+          parameter(
+              "tolerance_percent", &ZippingOptions::tolerance_percent, "Tolerance", unit::percent, 0.01, 50,
+              "Largest distance from the design, in percent of the object's size, within which 95 % of the cloth must lie to count as the intended shape.")
+              .slider(0.5, 10)
+              .group("Simulation")},
       inherit_parameters<ZippingOptions>(MakingErrors::parameters));
 };
 

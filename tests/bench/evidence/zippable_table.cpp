@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Hides errors of making in virtual zippables and asks the diagnosis for them: one line of JSON for each case.
-//   zippable_table [--seeds N] [--only CAUSE|none] [--shape NAME] [--level X] [--tape-sigma MM] [--lengths N] [--flat N]
+//   zippable_table [--seeds N] [--only CAUSE|none] [--shape NAME] [--level X] [--tape-sigma MM] [--lengths N] [--flat
+//   N]
 //                  [--scan N] [--pairs] [--repair]
 // --repair also makes a second shape by a plan that the finding corrects, and says how far each is from its design.
 #include <chrono>
@@ -47,8 +48,14 @@ Json one_case(const std::string& cause, const std::string& shape, unsigned seed,
   ZippableObservation observation = a.observation;
   observation.hangs = cause == "gravity" || seed % 2 == 1;
   making.options.hung_at_mm = 0.2 * design.zipper_mm;
-  Json line = {{"seed", seed}, {"shape", shape}, {"cause", cause}, {"level", a.level}, {"lengths", observation.zipped_lengths},
-               {"flat", observation.flat_lengths}, {"scan", observation.scan_points}, {"tape_sigma_mm", observation.tape_sigma_mm}};
+  Json line = {{"seed", seed},
+               {"shape", shape},
+               {"cause", cause},
+               {"level", a.level},
+               {"lengths", observation.zipped_lengths},
+               {"flat", observation.flat_lengths},
+               {"scan", observation.scan_points},
+               {"tape_sigma_mm", observation.tape_sigma_mm}};
   const auto start = std::chrono::steady_clock::now();
   const ZippableModel model({make_zippable(shape, design, making, observation, random)}, context);
   SimulationBag bag(model);

@@ -11,6 +11,7 @@
 
 namespace formwright {
 namespace {
+using test::planned;
 
 bool within(const Polygon& polygon, const Vec2& p) {
   bool in = false;
@@ -20,11 +21,6 @@ bool within(const Polygon& polygon, const Vec2& p) {
       in = !in;
   }
   return in;
-}
-
-ZippablePlan planned(const FlatDesign& design, const PlanOptions& options) {
-  Context context;
-  return plan_zippable(design, options, context);
 }
 
 TEST_CASE("ClosureMarks.NumbersPairUpAtTheSamePlacesOfTheCut") {

@@ -20,6 +20,11 @@ inline FlatDesign designed(std::string_view sample, double width_mm, double size
   return read_flat_design(write_design_json(model, design));
 }
 
+inline ZippablePlan planned(const FlatDesign& design, const PlanOptions& options) {
+  Context context;
+  return plan_zippable(design, options, context);
+}
+
 /// A flat strip in the plane z = 0 along x, whose left zipper side is its lower edge; sides of the same zipper that do
 /// not meet in space.
 inline FlatDesign strip(double length_mm, double width_mm, int samples) {

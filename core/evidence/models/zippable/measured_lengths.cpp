@@ -76,7 +76,8 @@ std::vector<MeasuredLength> read_measured_lengths(ByteView csv) {
       for (std::size_t i = 0; i < fields.size(); ++i) column.emplace(std::string(fields[i]), i);
       for (const char* name : {"from", "to", "state", "length_mm"})
         if (!column.contains(name))
-          refuse_line(line, std::string("the column “") + name + "” is missing: the header is from,to,state,length_mm,sigma_mm.");
+          refuse_line(line, std::string("the column “") + name +
+                                "” is missing: the header is from,to,state,length_mm,sigma_mm.");
       continue;
     }
     const auto field = [&](const char* name) {

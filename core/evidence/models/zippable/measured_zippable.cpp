@@ -36,6 +36,12 @@ void read_setup(ByteView bytes, MeasuredZippable& object) {
   object.marker_spacing_mm = taken(json, "marker_spacing_mm", object.marker_spacing_mm, 1, 10000);
   object.scan_sigma_mm = taken(json, "scan_sigma_mm", object.scan_sigma_mm, 1e-3, max_scan_sigma_mm);
   object.hangs = json.contains("hung_at_mm");
+  if (json.contains("measured_surface")) {
+    const Json surface = json["measured_surface"];
+    if (surface != "outer" && surface != "mid") refuse_folder("setup.json: “measured_surface” must be outer or mid.");
+    object.scan_is_outside = surface == "outer";
+    json.erase("measured_surface");
+  }
   try {
     object.setup = read_parameters<ZippingOptions>(json);
   } catch (const Error& error) {
@@ -65,7 +71,8 @@ MeasuredZippable read_measured_zippable(const std::string& name, const std::map<
   for (const MeasuredLength& length : object.lengths)
     for (const ZipperMark& mark : {length.from, length.to})
       if (mark.number * object.marker_spacing_mm > design.zipper_mm)
-        refuse_folder("lengths.csv: mark " + std::to_string(mark.number) + " lies beyond the zipper, whose last mark is " +
+        refuse_folder("lengths.csv: mark " + std::to_string(mark.number) +
+                      " lies beyond the zipper, whose last mark is " +
                       std::to_string(static_cast<int>(design.zipper_mm / object.marker_spacing_mm)) +
                       ": correct the number, or “marker_spacing_mm” in setup.json.");
   for (const char* scan : {"scan.ply", "scan.obj", "scan.stl", "scan.glb"})

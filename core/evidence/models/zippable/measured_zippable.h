@@ -33,6 +33,10 @@ struct MeasuredZippable {
   std::vector<MeasuredLength> lengths;
   Positions scan_mm;  // points of the outside of the zipped object, in coordinates of their own; may be empty
   double scan_sigma_mm = 0.3;
+  bool scan_is_outside = true;  // else the cloth's middle surface, as simulations write it
+
+  /// How far outside of the middle surface a scan sees the cloth.
+  double scan_offset_mm() const { return scan_is_outside ? 0.5 * setup.thickness_mm : 0; }
 };
 
 /// CSV with the header from,to,state,length_mm,sigma_mm: marks as "12", or "12L" and "12R" for one side of the flat

@@ -13,8 +13,8 @@
 namespace formwright {
 namespace {
 
-constexpr double huber = 1.345;             // times the scatter: 95 % efficient for normal errors
-constexpr double normal_scatter = 1.4826;   // standard deviation over median distance
+constexpr double huber = 1.345;            // times the scatter: 95 % efficient for normal errors
+constexpr double normal_scatter = 1.4826;  // standard deviation over median distance
 constexpr Eigen::Index points_of_search = 300;
 constexpr int rounds_of_search = 25;
 
@@ -134,7 +134,8 @@ Eigen::VectorXd ScannedShape::distances_mm(const Positions& points, const RigidM
   Eigen::VectorXd distances(points.rows());
   parallel_for(static_cast<std::size_t>(points.rows()), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
-      distances[static_cast<Eigen::Index>(i)] = contact(moved.row(static_cast<Eigen::Index>(i)).transpose()).distance_mm;
+      distances[static_cast<Eigen::Index>(i)] =
+          contact(moved.row(static_cast<Eigen::Index>(i)).transpose()).distance_mm;
   });
   return distances;
 }

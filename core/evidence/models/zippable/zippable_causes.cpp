@@ -118,7 +118,8 @@ void declare_zippable_parameters(const MeasuredZippable& object, const RibbonPat
     p.name = varied.name;
     p.label = varied.label;
     p.unit = varied.unit;
-    if (const auto info = std::find_if(infos.begin(), infos.end(), [&](const ParameterInfo& i) { return i.name == p.name; });
+    if (const auto info =
+            std::find_if(infos.begin(), infos.end(), [&](const ParameterInfo& i) { return i.name == p.name; });
         info != infos.end()) {
       p.label = info->label;
       p.unit = info->unit;
@@ -163,14 +164,17 @@ std::string zippable_cause_in_words(std::string_view cause, std::span<const doub
   if (cause == "cloth_bias")
     return "The cloth lay askew on the bed: its right angles are off by about " +
            with_digits(2 * std::abs(v) * 57.29577951308232, 2) + "°.";
-  if (cause == "kerf") return "The cut removed about " + mm(v) + larger(v, " more", " less") + " than the plan allows for.";
+  if (cause == "kerf")
+    return "The cut removed about " + mm(v) + larger(v, " more", " less") + " than the plan allows for.";
   if (cause == "zipper_gap") return "The closed zipper is about " + mm(v) + " wider than the plan allows for.";
-  if (cause == "seam_take_up") return "About " + mm(v) + " more cloth than planned disappears under the zipper at each edge.";
+  if (cause == "seam_take_up")
+    return "About " + mm(v) + " more cloth than planned disappears under the zipper at each edge.";
   if (cause == "stuffing") return "The stuffing pushes from inside with about " + with_digits(v, 2) + " Pa.";
   if (cause == "gravity") return "It sags as cloth of about " + with_digits(v, 2) + " g/m² does.";
   if (cause == "marks_scale")
     return "The marks along the zipper lie about " + percent(v) + larger(v, " too far apart.", " too close together.");
-  if (cause == "tape_scale") return "Lengths were measured about " + percent(v) + larger(v, " too large.", " too small.");
+  if (cause == "tape_scale")
+    return "Lengths were measured about " + percent(v) + larger(v, " too large.", " too small.");
   if (cause == "stiff_zipper")
     return "Our simulation leaves out that the zipper resists bending with about " + with_digits(v, 2) + " N mm².";
   return "";

@@ -37,17 +37,16 @@ ZippableModel::ZippableModel(std::vector<MeasuredZippable> objects, Context& con
     PreparedObject prepared;
     prepared.pattern[0] = pattern_of(object.design, object.setup.edge_mm, context);
     const double coarse = prepared.pattern[0].width_mm, edge = object.setup.edge_mm;
-    prepared.pattern[1] =
-        pattern_of(object.design, edge > 0 ? finer_edge * edge : finer_edge * coarse, context);
+    prepared.pattern[1] = pattern_of(object.design, edge > 0 ? finer_edge * edge : finer_edge * coarse, context);
     for (std::size_t k = 0; k < 2; ++k)
       prepared.start[k] =
           zipped_at_rest(prepared.pattern[k], object.setup, prepared.pattern[k].predicted_mm, context).x;
     known_misfit_mm_ = std::max(known_misfit_mm_, known_misfit_share * prepared.pattern[0].size_mm);
     if (has_scan(object)) {
       prepared.scan_mm = evenly_chosen(object.scan_mm, max_scan_points);
-      const ScannedShape shape(shape_of(prepared.pattern[0], prepared.start[0]), 0.5 * object.setup.thickness_mm);
-      prepared.scan_motion = shape.aligned(prepared.scan_mm, shape.found(prepared.scan_mm, context),
-                                           rounds_of_alignment, context);
+      const ScannedShape shape(shape_of(prepared.pattern[0], prepared.start[0]), object.scan_offset_mm());
+      prepared.scan_motion =
+          shape.aligned(prepared.scan_mm, shape.found(prepared.scan_mm, context), rounds_of_alignment, context);
     }
     prepared_.push_back(std::move(prepared));
   }
@@ -71,7 +70,8 @@ void ZippableModel::add_lengths(int object) {
   for (Eigen::Index i = 0; i < n; ++i) {
     const MeasuredLength& length = own.lengths[static_cast<std::size_t>(i)];
     // Lengths between neighbouring places are neighbours.
-    const int low = std::min(length.from.number, length.to.number), high = std::max(length.from.number, length.to.number);
+    const int low = std::min(length.from.number, length.to.number),
+              high = std::max(length.from.number, length.to.number);
     m.place.row(i) << low * own.marker_spacing_mm / pattern.zipper_mm, high * own.marker_spacing_mm / pattern.zipper_mm;
     m.measured(i, 0) = length.length_mm;
     m.sigma[i] = length.sigma_mm;
@@ -150,7 +150,8 @@ ZippableModel::Rest ZippableModel::at_rest(int object, const Eigen::VectorXd& u,
     const std::size_t k = finer ? 1 : 0;
     Context own = context;
     const auto quiet = own.span(0, 0, "");
-    auto rest = std::make_shared<const Positions>(zipped_at_rest(prepared.pattern[k], options, prepared.start[k], own).x);
+    auto rest =
+        std::make_shared<const Positions>(zipped_at_rest(prepared.pattern[k], options, prepared.start[k], own).x);
     promise.set_value(rest);
     return rest;
   } catch (...) {
@@ -189,8 +190,8 @@ Eigen::MatrixXd ZippableModel::lengths_at(int object, const Eigen::VectorXd& u, 
       const Vec2 across = (on_side(length.to) - on_side(length.from)).head<2>();
       const ZipperPlace place = zipper_place(pattern, length.from.number * own.marker_spacing_mm);
       const SeamPair& pair = pattern.seams[static_cast<std::size_t>(place.pair[0])];
-      const auto triangle = static_cast<std::size_t>(
-          triangle_of[static_cast<std::size_t>(length.from.left ? pair.left : pair.right)]);
+      const auto triangle =
+          static_cast<std::size_t>(triangle_of[static_cast<std::size_t>(length.from.left ? pair.left : pair.right)]);
       lengths(i, 0) = flat.cloth_change.empty() ? across.norm() : (flat.cloth_change[triangle] * across).norm();
     } else {
       const auto zipped = [&](const ZipperMark& mark) {
@@ -209,8 +210,7 @@ Eigen::MatrixXd ZippableModel::distances_at(int object, const Eigen::VectorXd& u
   const PreparedObject& prepared = prepared_[static_cast<std::size_t>(object)];
   const Rest rest = at_rest(object, u, context);
   const double larger = 1 + value("tape_scale", u);
-  const ScannedShape shape(shape_of(prepared.pattern[finer_at(u) ? 1 : 0], larger * *rest),
-                           0.5 * own.setup.thickness_mm);
+  const ScannedShape shape(shape_of(prepared.pattern[finer_at(u) ? 1 : 0], larger * *rest), own.scan_offset_mm());
   const RigidMotion motion = shape.aligned(prepared.scan_mm, prepared.scan_motion, rounds_of_alignment, context);
   // The scan's distances from the shape: a prediction is what a point that was measured at 0 is off by, the other way.
   return -shape.distances_mm(prepared.scan_mm, motion);

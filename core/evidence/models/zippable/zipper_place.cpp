@@ -8,6 +8,7 @@ namespace formwright {
 namespace {
 
 constexpr double min_share_of_size = 0.1;  // shorter lengths tell little for their error
+constexpr double max_widths = 2;           // from one side of the ribbon to the other; beside an opening there is none
 constexpr int marks_along = 4;             // a flat length along the ribbon
 constexpr double same_turn_rad = 1e-6;
 
@@ -54,7 +55,7 @@ std::vector<MeasuredLength> measurable_lengths(const RibbonPattern& pattern, dou
     });
   };
   std::vector<MeasuredLength> all, lengths;
-  // Of several thousand marks every so manieth.
+  // Of several thousand marks, some hundreds spread evenly.
   const int stride = std::max(1, marks / 200);
   for (int a = 0; a < marks; a += stride)
     for (int b = a + stride; b < marks; b += stride)
@@ -76,9 +77,13 @@ std::vector<MeasuredLength> measurable_lengths(const RibbonPattern& pattern, dou
         if (nearest < 0 || distance < nearest) nearest = distance, length.to = {other, false};
       }
     }
-    const bool one_place = length.to.left && length.to.number == length.from.number;
-    if (!one_place && std::abs(piece_turn(pattern, length.from, marker_spacing_mm) -
-                               piece_turn(pattern, length.to, marker_spacing_mm)) < same_turn_rad)
+    const bool one_place = length.to.left && length.to.number == length.from.number,
+               across = (flat_place(pattern, length.to, marker_spacing_mm) -
+                         flat_place(pattern, length.from, marker_spacing_mm))
+                            .norm() < max_widths * pattern.width_mm;
+    if (!one_place && (length.to.left || across) &&
+        std::abs(piece_turn(pattern, length.from, marker_spacing_mm) -
+                 piece_turn(pattern, length.to, marker_spacing_mm)) < same_turn_rad)
       lengths.push_back(length);
   }
   return lengths;

@@ -87,10 +87,10 @@ std::vector<SeparatedPair> separated_pairs(SimulationBag& bag, const Diagnosis& 
   std::vector<SeparatedPair> separations;
   for (const NotSeparable& pair : pairs) {
     SeparatedPair separated{pair, "", pair.similarity};
-    const Separation found =
-        proposals.empty() ? Separation{}
-                          : best_separation(bag, diagnosis, pair, proposals,
-                                            std::max(diagnosis.noise.front().sigma, min_sigma), context);
+    const Separation found = proposals.empty()
+                                 ? Separation{}
+                                 : best_separation(bag, diagnosis, pair, proposals,
+                                                   std::max(diagnosis.noise.front().sigma, min_sigma), context);
     if (found.proposal >= 0)
       separated.what = proposals[static_cast<std::size_t>(found.proposal)].what,
       separated.similarity = found.similarity;

@@ -16,10 +16,10 @@ namespace {
 struct DiagnoseZippableOptions {
   bool pairs = true;
 
-  static constexpr auto parameters = std::tuple{
-      parameter("pairs", &DiagnoseZippableOptions::pairs, "Two causes at once",
-                "Also looks for two causes acting together. Takes longer; switch it off for a quick look.")
-          .group("Diagnosis")};
+  static constexpr auto parameters =
+      std::tuple{parameter("pairs", &DiagnoseZippableOptions::pairs, "Two causes at once",
+                           "Also looks for two causes acting together. Takes longer; switch it off for a quick look.")
+                     .group("Diagnosis")};
 };
 
 const std::vector<std::string> files_of_zippable{"design.json"};

@@ -24,16 +24,19 @@ struct PlanLengthsOptions {
   bool flat_lengths = true;
 
   static constexpr auto parameters = std::tuple{
-      parameter("length_count", &PlanLengthsOptions::length_count, "Lengths", unit::none, 6, 100,
-                "Number of lengths to measure. Twenty show most errors of making at their usual strength; each takes about half a minute.")
+      parameter(
+          "length_count", &PlanLengthsOptions::length_count, "Lengths", unit::none, 6, 100,
+          "Number of lengths to measure. Twenty show most errors of making at their usual strength; each takes about half a minute.")
           .group("Measuring by hand")
           .slider(6, 40),
-      parameter("tape_sigma_mm", &PlanLengthsOptions::tape_sigma_mm, "Measuring error", unit::mm, 0.01, 20,
-                "Standard deviation of a length that you measure. 0.5 mm is usual for calipers on cloth, 1 mm for a tape.")
+      parameter(
+          "tape_sigma_mm", &PlanLengthsOptions::tape_sigma_mm, "Measuring error", unit::mm, 0.01, 20,
+          "Standard deviation of a length that you measure. 0.5 mm is usual for calipers on cloth, 1 mm for a tape.")
           .group("Measuring by hand")
           .slider(0.1, 2),
-      parameter("flat_lengths", &PlanLengthsOptions::flat_lengths, "Also on the flat pieces",
-                "Also asks for lengths on the pieces as they were cut, before they are sewn: these tell errors of the cut from errors of the seams.")
+      parameter(
+          "flat_lengths", &PlanLengthsOptions::flat_lengths, "Also on the flat pieces",
+          "Also asks for lengths on the pieces as they were cut, before they are sewn: these tell errors of the cut from errors of the seams.")
           .group("Measuring by hand")};
 };
 
@@ -51,7 +54,8 @@ std::vector<ReportField> plan_lengths_fields() {
        "For each cause: the strength from which these lengths show it, the same with every length that can be measured, its usual strength, and the cause that is hardest to tell from it."},
       {"information_nats", "Information", "nats",
        "What the chosen lengths together tell about all causes (mutual information, in units of 1.44 bits)."},
-      {"information_of_all_nats", "Information of all lengths", "nats", "The same for every length that was looked at."},
+      {"information_of_all_nats", "Information of all lengths", "nats",
+       "The same for every length that was looked at."},
       {"candidates", "Lengths looked at", "", "Number of lengths to choose from."},
       {"marks", "Marks", "", "Number of marks along the zipper."},
       {"simulations", "Simulations", "", "Number of simulations that were made."},
@@ -71,8 +75,7 @@ OperationResult run_evidence_plan_lengths(const OperationCall& call, const PlanL
   object.name = "object";
   object.design = ribbon_of(design);
   if (const auto plan = call.inputs.find("plan"); plan != call.inputs.end()) {
-    const PlanRecord record =
-        read_plan_record(*plan->second.bytes, static_cast<std::size_t>(design.F.rows()), "plan");
+    const PlanRecord record = read_plan_record(*plan->second.bytes, static_cast<std::size_t>(design.F.rows()), "plan");
     object.marker_spacing_mm = record.marker_spacing_mm;
     object.design.turn_of_triangle_rad = record.turn_of_triangle_rad;
   }
@@ -119,8 +122,7 @@ OperationResult run_evidence_plan_lengths(const OperationCall& call, const PlanL
   result.report["marks"] = static_cast<int>(design.zipper_mm / model->objects().front().marker_spacing_mm) + 1;
   result.report["simulations"] = bag.simulations();
   result.report["seconds_plan"] = watch.seconds();
-  if (call.wants("lengths.csv"))
-    result.outputs.push_back(make_output(plan_lengths_outputs().front(), to_bytes(form)));
+  if (call.wants("lengths.csv")) result.outputs.push_back(make_output(plan_lengths_outputs().front(), to_bytes(form)));
   return result;
 }
 

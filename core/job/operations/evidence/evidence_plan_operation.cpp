@@ -116,7 +116,9 @@ FormedObject object_of(const SimulationCall& simulation, const Simulated& simula
 
 std::string plan_sentence(const ForwardModel& model, const MeasuringPlan& plan, std::size_t measured) {
   const bool with_rim = model.measurements().size() > 1;
-  return outlook_sentence(model, plan, std::string(measured > 0 ? "The measured points and these marks" : "These marks") + (with_rim ? " and the rim's thickness" : ""));
+  return outlook_sentence(model, plan,
+                          std::string(measured > 0 ? "The measured points and these marks" : "These marks") +
+                              (with_rim ? " and the rim's thickness" : ""));
 }
 
 InputInfo measured_so_far_info() {

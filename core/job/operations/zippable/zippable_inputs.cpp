@@ -36,8 +36,7 @@ InputInfo plan_record_info() {
 
 Json with_making_profile(const OperationCall& call, const Json& given) {
   const auto profile = call.inputs.find("profile");
-  return profile == call.inputs.end() ? given
-                                      : with_making_profile(given, read_making_profile(*profile->second.bytes));
+  return profile == call.inputs.end() ? given : with_making_profile(given, read_making_profile(*profile->second.bytes));
 }
 
 }  // namespace formwright

@@ -254,8 +254,9 @@ OffsetRibbon offset_ribbon(const FlatDesign& design, ZipperOffset method, double
   ribbon.offset_share.assign(design.left_vertex.size(), 1.0);
   for (const FlatVertex& v : design.boundary) ribbon.flat_mm.push_back(v.flat_mm);
   if (offset_mm < 0 && method == ZipperOffset::gluing)
-    throw Error(ErrorCode::invalid_input, "seam_take_up_mm",
-                "For gluing the edges cannot be moved outwards: choose sewing, a wider gap, or less cloth lost in seams.");
+    throw Error(
+        ErrorCode::invalid_input, "seam_take_up_mm",
+        "For gluing the edges cannot be moved outwards: choose sewing, a wider gap, or less cloth lost in seams.");
   if (offset_mm != 0) {
     if (method == ZipperOffset::sewing) move_in_plane(design, offset_mm, ribbon);
     else move_in_space(design, offset_mm, ribbon);
@@ -265,7 +266,8 @@ OffsetRibbon offset_ribbon(const FlatDesign& design, ZipperOffset method, double
     ribbon.offset_mean_mm += offset_mm * share / static_cast<double>(ribbon.offset_share.size());
   if (std::abs(ribbon.offset_mean_mm) < 0.5 * std::abs(offset_mm)) {
     throw Error(ErrorCode::invalid_input, "coil",
-                "The ribbon is too narrow for this zipper, whose sides need " + with_decimals(2 * std::abs(offset_mm), 1) +
+                "The ribbon is too narrow for this zipper, whose sides need " +
+                    with_decimals(2 * std::abs(offset_mm), 1) +
                     " mm together: choose a smaller coil or a wider ribbon.");
   }
   for (int v = 0; v < design.vertex_count(); ++v)

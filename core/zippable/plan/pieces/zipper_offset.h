@@ -44,8 +44,8 @@ struct OffsetRibbon {
 
 /// Every triangle keeps its orientation and a tenth of its area; where it would not, the zipper moves closer to the
 /// edge. An offset below 0 moves
-/// the edges outwards, in the plane only. Throws Error{invalid_input, "coil"} when less than half of the offset has room
-/// on the average, "seam_take_up_mm" for an offset below 0 where the zipper is glued.
+/// the edges outwards, in the plane only. Throws Error{invalid_input, "coil"} when less than half of the offset has
+/// room on the average, "seam_take_up_mm" for an offset below 0 where the zipper is glued.
 OffsetRibbon offset_ribbon(const FlatDesign& design, ZipperOffset method, double offset_mm);
 
 }  // namespace formwright

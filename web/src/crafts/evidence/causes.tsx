@@ -3,8 +3,8 @@
 import { useSignal } from '@preact/signals';
 import { useId } from 'preact/hooks';
 import { Icon, formatNumber, withUnit } from '../../ui';
-import type { Cause, Diagnosis } from './diagnosis';
-import { formatEstimate, minListed, oddsAgainstNone, percent } from './diagnosis';
+import type { Cause, Diagnosis } from '../../shared/diagnosis/diagnosis';
+import { formatEstimate, minListed, oddsAgainstNone, percent } from '../../shared/diagnosis/diagnosis';
 import type { EvidenceSession } from './evidence_session';
 import { comparing } from './evidence_document';
 

@@ -24,7 +24,7 @@ import { begin } from './by_hand/plan_marks';
 import { HandInspector } from './by_hand/hand_inspector';
 import { HandPanel } from './by_hand/hand_panel';
 import { PatternButton } from './pattern_dialog';
-import type { Diagnosis } from './diagnosis';
+import type { Diagnosis } from '../../shared/diagnosis/diagnosis';
 import { view } from './view_choice';
 import { VirtualObject } from './objects/virtual_object';
 

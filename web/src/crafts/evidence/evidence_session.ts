@@ -16,7 +16,7 @@ import { machineProfile } from '../../shared/session/machine_profile';
 import { figure } from '../../shared/session/report';
 import { RoomSession } from '../../shared/session/room_session';
 import type { Services } from '../../shared/session/services';
-import { readDiagnosis } from './diagnosis';
+import { readDiagnosis } from '../../shared/diagnosis/diagnosis';
 import type { EvidenceDocument, MeasuredObject, ObjectFile } from './evidence_document';
 import { comparing, evidence, objectFiles, operationOf, subjectOf } from './evidence_document';
 import { sortFiles } from './objects/measured_files';

@@ -4,7 +4,7 @@ import type { CraftResult } from '../../shared/session/craft_document';
 import { figure } from '../../shared/session/report';
 import { Results } from '../../shared/panels/results';
 import { RunningStrip } from '../../shared/panels/room_strip';
-import { percent, readDiagnosis } from './diagnosis';
+import { percent, readDiagnosis } from '../../shared/diagnosis/diagnosis';
 import { diagnosing, evidence, usesIn } from './evidence_document';
 import type { EvidenceSession } from './evidence_session';
 import { measuredMarks } from './by_hand/hand_marks';

@@ -2,8 +2,8 @@
 // A diagnosis in five steps: how far off, where, why, what to do, how sure.
 import type { ComponentChildren } from 'preact';
 import { Button, formatNumber, withUnit } from '../../ui';
-import type { Diagnosis, Gain } from './diagnosis';
-import { percent, readingWords } from './diagnosis';
+import type { Diagnosis } from '../../shared/diagnosis/diagnosis';
+import { sureWords, whyWords } from '../../shared/diagnosis/diagnosis_words';
 import type { EvidenceSession } from './evidence_session';
 import type { Residuals } from './pictures/residuals';
 import { minPrintPoints } from './pictures/print_picture';
@@ -71,17 +71,6 @@ function whereWords(residuals: Residuals): string {
     : `Most ${worst.where}, ${length(worst.mean_mm)} on average there.`;
 }
 
-/** One sentence for each named cause. */
-export function whyWords(diagnosis: Diagnosis): string {
-  const { named, causes, reading } = diagnosis;
-  if (reading === 'none' || reading === 'unknown') return readingWords(diagnosis);
-  const sentences = named.flatMap((name) => {
-    const cause = causes.find((one) => one.name === name);
-    return cause ? [cause.inWords || `${cause.label}.`] : [];
-  });
-  return [...sentences, readingWords(diagnosis)].filter(Boolean).join(' ');
-}
-
 function todo({ reading, named, causes }: Diagnosis): string[] {
   if (reading === 'none') return ['Nothing: use the calibrated material for the next print.'];
   if (reading === 'unknown')
@@ -99,29 +88,4 @@ function printWords(residuals: Residuals, { named, causes }: Diagnosis): string 
   return moved === null
     ? ''
     : `${machineIsWell ? 'The' : 'Or print for the machine as it is: the'} simulation with this cause puts the features of the next print ${length(moved.mean_mm)} elsewhere on average, up to ${length(moved.largest_mm)}.`;
-}
-
-const gainWords = ({ unseen, before, after }: Gain): string =>
-  `${unseen ? 'On the object kept for checking' : 'On points that were left out of the fit'}, the error ${
-    after.value < before.value ? 'falls' : 'goes'
-  } from ${length(before.value)} to ${length(after.value)}.`;
-
-const quantityWords = ({
-  title,
-  readings,
-  before_mm,
-  after_mm,
-}: Diagnosis['otherQuantities'][number]): string =>
-  `${title}, ${readings} ${readings === 1 ? 'reading' : 'readings'}: the error ${
-    after_mm < before_mm ? 'falls' : 'goes'
-  } from ${length(before_mm)} to ${length(after_mm)}.`;
-
-/** The most probable answer, what was not used for the fit, and what speaks against it. */
-export function sureWords({ answers, gains, otherQuantities, doubts, reading }: Diagnosis): string[] {
-  const first = answers[0];
-  return [
-    ...(first ? [`${percent(first.probability)} for “${first.label}”.`] : []),
-    ...(reading === 'none' ? [] : [...gains.map(gainWords), ...otherQuantities.map(quantityWords)]),
-    ...doubts,
-  ];
 }

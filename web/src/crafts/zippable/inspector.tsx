@@ -7,6 +7,7 @@ import { figure, vectorOf } from '../../shared/session/report';
 import { MainButton } from './export_button';
 import { Figures } from './figures';
 import { PartList } from './drawing/part_list';
+import { SewnButton } from './sewn/sewn_dialog';
 import type { SendToMachine } from './sheets/send_sheet';
 import { SheetSize } from './sheet_size_row';
 import { flatView } from './views';
@@ -74,6 +75,9 @@ export function Inspector({ session, picture, onReplace, onSolve, onSendToMachin
           openGroups={openGroups(session)}
         />
         <Figures session={session} />
+        <section class="section" aria-label="After sewing">
+          <SewnButton session={session} />
+        </section>
       </div>
       <div class="inspector-foot">
         <MainButton session={session} onSolve={onSolve} onSendToMachine={onSendToMachine} />

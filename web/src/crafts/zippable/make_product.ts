@@ -26,7 +26,7 @@ async function madeOf(
     output,
     beside,
     label,
-    ...(planned ? { parameters: session.sheets.parameters.value } : {}),
+    parameters: planned ? session.sheets.parameters.value : session.clothParameters.value,
   });
 }
 

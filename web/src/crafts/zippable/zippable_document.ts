@@ -9,6 +9,7 @@ import type { RoomWithProducts } from '../../shared/session/products';
 import { offeredTogether } from '../../shared/session/products';
 import type { Drawn } from './drawing/drawn_parts';
 import { nothingDrawn } from './drawing/drawn_parts';
+import type { SewnCheck } from './sewn/sewn_lengths';
 import { leftToLaser, planning } from './sheet_size';
 
 export { planning };
@@ -25,6 +26,17 @@ export function offered(catalog: Catalog): Operation | null {
   return leftToLaser({ ...operation, parameters: { properties } });
 }
 
+/** The group of parameters that a plan makes up for. */
+export const errorsOfMaking = 'Errors of making';
+
+/** Without what a plan makes up for: it leaves the cloth as it was designed. */
+export const withoutErrors = (operation: Operation, parameters: JsonObject): JsonObject =>
+  Object.fromEntries(
+    Object.entries(parameters).filter(
+      ([name]) => operation.parameters.properties[name]?.['x-group'] !== errorsOfMaking,
+    ),
+  );
+
 /** What was drawn, on which model, and as the operation reads it. */
 export interface DrawnParts extends Drawn {
   readonly on: string;
@@ -36,6 +48,8 @@ export interface ZippableDocument extends CraftDocument, RoomWithProducts {
   readonly drawn: DrawnParts | null;
   /** The laser that the cutting plans were laid out for; null before the first one. */
   readonly laid_out_for: LaserSheet | null;
+  /** Lengths of what was sewn; missing in projects of before these were measured. */
+  readonly sewn?: SewnCheck | null;
 }
 
 export const zippable = new CraftCommands<ZippableDocument>('zippable', {

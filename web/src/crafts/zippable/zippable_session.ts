@@ -34,7 +34,16 @@ import type { PartDistortion } from './ribbon/part_map';
 import { distortionOfParts, partsOfTriangles, VertexGrid } from './ribbon/part_map';
 import { LaserSheets } from './laser_sheets';
 import type { ZippableDocument } from './zippable_document';
-import { currentResult, design, drawnOn, offered, planning, simulating, zippable } from './zippable_document';
+import {
+  currentResult,
+  design,
+  drawnOn,
+  offered,
+  planning,
+  simulating,
+  withoutErrors,
+  zippable,
+} from './zippable_document';
 
 /** A model divided and parameterised; the same object for as many designs as are made on it. */
 export interface DividedModel {
@@ -103,8 +112,14 @@ export class ZippableSession extends RoomSession<ZippableDocument> {
   readonly shown = this.previews.shown;
   /** What plans are made of; null while the design is a preview. */
   readonly designFile = computed(() => this.result.value?.outputs['design.json'] ?? null);
+  /** What a simulation takes: a plan has made up for errors of making. */
+  readonly clothParameters = computed(() => {
+    const operation = this.operationNamed(simulating);
+    const { parameters } = this.document.value;
+    return operation ? withoutErrors(operation, parameters) : parameters;
+  });
   readonly plan = computed(() => this.#madeOfDesign(planning, this.sheets.parameters.value));
-  readonly simulation = computed(() => this.#madeOfDesign(simulating, this.document.value.parameters));
+  readonly simulation = computed(() => this.#madeOfDesign(simulating, this.clothParameters.value));
   /** How the simulated cloth went, of the design in force. */
   readonly film = signal<Film | null>(null);
   /** The report of the previewed ribbon with its distances from the model; null until it rests. */

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { describe, expect, it } from 'vitest';
 import type { ByHand, HandMark } from './hand_marks';
-import { lengthIn } from './lengths';
+import { lengthIn } from '../../../shared/diagnosis/length_in';
 import {
   expectedAt,
   fromOrigin,

@@ -3,7 +3,7 @@
 import type { JsonObject, Report } from '../../../jobs/contract';
 import type { BlobReference } from '../../../project/document';
 import { isObject } from '../../../project/document';
-import { lengthIn } from './lengths';
+import { lengthIn } from '../../../shared/diagnosis/length_in';
 import type { RimReading } from './rim';
 import { rimRows, thicknessColumns } from './rim';
 

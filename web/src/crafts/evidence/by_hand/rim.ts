@@ -2,7 +2,7 @@
 // How thick the clamped rim is, measured with calipers in the middle of each side.
 import type { Report } from '../../../jobs/contract';
 import { isObject } from '../../../project/document';
-import { lengthIn } from './lengths';
+import { lengthIn } from '../../../shared/diagnosis/length_in';
 
 export interface RimReading {
   readonly side: string;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How far the points are off, and what an extended model gains on data it was not shown.
 import { formatFixed, formatNumber, withUnit } from '../../../ui';
-import type { Diagnosis, Gain } from '../diagnosis';
+import type { Diagnosis, Gain } from '../../../shared/diagnosis/diagnosis';
 import type { EvidenceSession, Look } from '../evidence_session';
 import { modelWords, Pane } from './maps';
 import { distancesOf, histogram, meanOf, niceUp, percentile } from './residuals';

@@ -3,7 +3,7 @@
 import type { Json, JsonObject, Report } from '../../jobs/contract';
 import { isObject } from '../../project/document';
 import { formatNumber, withUnit } from '../../ui';
-import { figure, sentences } from '../../shared/session/report';
+import { figure, sentences } from '../session/report';
 
 export interface Estimate {
   readonly value: number;

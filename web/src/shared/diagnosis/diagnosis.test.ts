@@ -2,7 +2,7 @@
 import { describe, expect, it } from 'vitest';
 import type { Report } from '../../jobs/contract';
 import { formatEstimate, oddsAgainstNone, percent, readDiagnosis, readingWords } from './diagnosis';
-import { sureWords, whyWords } from './story';
+import { sureWords, whyWords } from './diagnosis_words';
 
 const report: Report = {
   verdict: ['heating_gradient'],

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A diagnosis as sentences: why, and how sure.
+import { formatNumber, withUnit } from '../../ui';
+import type { Diagnosis, Gain } from './diagnosis';
+import { percent, readingWords } from './diagnosis';
+
+const length = (value_mm: number): string => withUnit(formatNumber(value_mm, 2), 'mm');
+
+/** One sentence for each named cause. */
+export function whyWords(diagnosis: Diagnosis): string {
+  const { named, causes, reading } = diagnosis;
+  if (reading === 'none' || reading === 'unknown') return readingWords(diagnosis);
+  const sentences = named.flatMap((name) => {
+    const cause = causes.find((one) => one.name === name);
+    return cause ? [cause.inWords || `${cause.label}.`] : [];
+  });
+  return [...sentences, readingWords(diagnosis)].filter(Boolean).join(' ');
+}
+
+const gainWords = ({ unseen, before, after }: Gain): string =>
+  `${unseen ? 'On the object kept for checking' : 'On points that were left out of the fit'}, the error ${
+    after.value < before.value ? 'falls' : 'goes'
+  } from ${length(before.value)} to ${length(after.value)}.`;
+
+const quantityWords = ({
+  title,
+  readings,
+  before_mm,
+  after_mm,
+}: Diagnosis['otherQuantities'][number]): string =>
+  `${title}, ${readings} ${readings === 1 ? 'reading' : 'readings'}: the error ${
+    after_mm < before_mm ? 'falls' : 'goes'
+  } from ${length(before_mm)} to ${length(after_mm)}.`;
+
+/** The most probable answer, what was not used for the fit, and what speaks against it. */
+export function sureWords({ answers, gains, otherQuantities, doubts, reading }: Diagnosis): string[] {
+  const first = answers[0];
+  return [
+    ...(first ? [`${percent(first.probability)} for “${first.label}”.`] : []),
+    ...(reading === 'none' ? [] : [...gains.map(gainWords), ...otherQuantities.map(quantityWords)]),
+    ...doubts,
+  ];
+}

@@ -101,7 +101,7 @@ TEST_CASE("SheetSimulation.ABatchOfAHelperHasTheSameBits") {
 TEST_CASE("SheetSimulation.NoAnswerIsKeptAndTravels") {
   const FormedObject object = quick_object();
   SheetSimulation simulation = quick_simulation(object);
-  simulation.options.mould_shift_x_mm = 50;
+  simulation.options.clamp_opening_x_mm = simulation.options.sheet_x_mm + 10;
   const Bytes here = simulated(simulation, object.mould, Context());
   const Bytes there =
       simulated_by_recipe(simulation.key(), simulation_recipe(simulation), packed_mould(object.mould->mesh), Context());

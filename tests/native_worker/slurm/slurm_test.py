@@ -16,7 +16,6 @@ from slurm_cluster import SlurmCluster, missing_programs, processes
 
 PROGRAM = sys.argv.pop(1)
 QUICK_SCHEDULER = ",batch_sched_delay=0,sched_interval=2,sched_min_interval=0"
-# Without what depends on the clock.
 PLAN = ("evidence-plan-points", "--sample", "pyramid", "--size-mm", 60, "--triangles", 500, "--mark-count", 4)
 
 
@@ -25,9 +24,9 @@ def words_of(*words):
 
 
 def same(value):
-    """An answer without the seconds that it took."""
+    """An answer without the seconds and the memory that it took."""
     if isinstance(value, dict):
-        return {k: same(v) for k, v in value.items() if not k.startswith("seconds")}
+        return {k: same(v) for k, v in value.items() if not k.startswith(("seconds", "peak_memory"))}
     return [same(v) for v in value] if isinstance(value, list) else value
 
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Seconds of evidence commands on this computer and in a Slurm cluster of two nodes on the same computer, one core each, with Slurm's usual delays.
-Usage: slurm_seconds.py PROGRAM"""
+Usage: slurm_seconds.py PROGRAM [plan|grid|diagnosis ...]"""
 import os
 import pathlib
 import re
@@ -36,8 +36,11 @@ with tempfile.TemporaryDirectory() as temporary, SlurmCluster() as cluster:
     subprocess.run([PROGRAM, "evidence-virtual-object", "--sample", "pyramid", "--size-mm", "100", "--heating-gradient-x", "0.4", "--out", lamp, "--quiet"], check=True, capture_output=True)
     print(f"load before: {os.getloadavg()[0]:.1f}")
     for title, words in COMMANDS.items():
+        if sys.argv[2:] and title.split()[0] not in sys.argv[2:]:
+            continue
         words = [word.format(object=lamp) for word in words]
         for number, engine in enumerate(((), ("--engine", "slurm"), ("--engine", "slurm", "--local-seconds", "0"))):
             took, places = seconds(folder, f"{words[0]}-{number}", words, *engine, env=cluster.environment)
-            arrays = cluster.run("scontrol", "show", "job", "--oneliner").stdout
-            print(f"{title} | {' '.join(engine) or 'this computer'} | {took:.1f} s | {places} | arrays so far: {len(set(re.findall(r'JobName=(slurm-\w+-\d+)', arrays)))}", flush=True)
+            jobs = cluster.run("scontrol", "show", "job", "--oneliner").stdout
+            arrays = len(set(re.findall(r"JobName=(slurm-\w+-\d+)", jobs)))
+            print(f"{title} | {' '.join(engine) or 'this computer'} | {took:.1f} s | {places} | arrays so far: {arrays}", flush=True)

@@ -8,6 +8,7 @@
 #include <csignal>
 #include <cstdio>
 #include <iostream>
+#include <optional>
 
 #include "base/sha256.h"
 #include "command_line/command_line.h"
@@ -20,8 +21,11 @@
 #include "command_line/manual_page.h"
 #include "command_line/output_folder.h"
 #include "system/private_data.h"
+#include "system/work_places.h"
 #include "jobs/job_runner.h"
 #include "server/serve.h"
+#include "slurm/slurm_engine.h"
+#include "jobs/simulation_task.h"
 #include "command_line/shell_completions.h"
 
 namespace formwright {
@@ -55,6 +59,8 @@ class ProgressLine {
     std::fprintf(stderr, "\r\033[K%s %3.0f %%  %s", bar.c_str(), 100 * progress.fraction, progress.stage.c_str());
     if (progress.seconds_left && *progress.seconds_left > 1)
       std::fprintf(stderr, ", about %.0f s left", *progress.seconds_left);
+    if (const std::string places = places_text(progress.places); !places.empty())
+      std::fprintf(stderr, " (%s)", places.c_str());
     shown_ = true;
   }
   void clear() {
@@ -71,6 +77,15 @@ class ProgressLine {
 bool makes_jobs(const Operation& operation) {
   return std::any_of(operation.outputs.begin(), operation.outputs.end(),
                      [](const OutputInfo& output) { return output.media_type == "text/x-gcode"; });
+}
+
+/// Where a run's simulations were made.
+void show_places(const WorkPlaces& places, int left_by_slurm) {
+  if (const std::string text = places_text(places.now()); !text.empty())
+    std::fprintf(stderr, "Simulations: %s.\n", text.c_str());
+  if (left_by_slurm > 0)
+    std::fprintf(stderr, "Slurm did not make %d of them: this computer did. squeue and the nodes' logs say why.\n",
+                 left_by_slurm);
 }
 
 /// A job that does not fit is not written: that is an error, or whoever sends what stands in the folder next would
@@ -100,11 +115,15 @@ JobResult run_to_result(const Operation& operation, ParsedCommand& command, cons
   ProgressLine line(command.quiet);
   Session session;
   Host host{[&](const Progress& progress) { line.show(progress); }, [] { return interrupted.load(); }, peak_memory_mb};
-  const ResultFolder results(command.results.empty() ? command.out / "simulations" : command.results);
-  if (operation.keeps_results) share_results(results, host);
+  const std::filesystem::path results = command.results.empty() ? command.out / "simulations" : command.results;
+  std::shared_ptr<WorkPlaces> places;
+  std::optional<SlurmEngine> slurm;
+  if (operation.keeps_results) places = share_results(ResultFolder(results), host);
+  if (command.slurm) slurm.emplace(command.slurm_options, results).lend_to(host, places);
   JobResult result = run_job(
       command.message, [&](const std::string& hash) { return blobs[hash]; }, session, host);
   line.clear();
+  if (places && !command.quiet) show_places(*places, slurm ? slurm->left_by_slurm() : 0);
   if (result.error) throw Error(result.error->code, result.error->where, result.error->message);
   require_fit(operation, result.report);
   return result;
@@ -193,6 +212,7 @@ int run(const std::vector<std::string>& words) {
   if (words[0] == "serve") return serve(rest);
   if (words[0] == "machine") return machine_command(rest, interrupted);
   if (words[0] == "run-jobs") return run_jobs_for_server(rest);
+  if (words[0] == "run-simulations") return run_simulations(rest, interrupted);
   if (const Operation* operation = find_operation(words[0])) return run_operation(*operation, rest);
   throw Error(ErrorCode::invalid_input, words[0], "There is no command " + words[0] + ": see formwright --help.");
 }

@@ -59,6 +59,11 @@ void Context::keep_result(const std::string& key, const Bytes& result) const {
   if (host_.keep_result) host_.keep_result(key, result);
 }
 
+void Context::make_results(const std::vector<ResultTask>& tasks, const std::string& stage) {
+  if (!host_.make_results || tasks.empty()) return;
+  host_.make_results(tasks, [&](double fraction) { progress(fraction, stage); });
+}
+
 double Context::peak_memory_mb() const { return host_.peak_memory_mb ? host_.peak_memory_mb() : 0.0; }
 
 bool Context::claim_result(const std::string& key) const { return !host_.claim_result || host_.claim_result(key); }

@@ -4,18 +4,35 @@
 #include <atomic>
 #include <chrono>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "base/bytes.h"
 
 namespace formwright {
 
+/// Where simulations of a job run, and how many.
+struct WorkPlace {
+  std::string name;  // of a computer, or of a queue; empty for this computer
+  int running = 0, done = 0, waiting = 0;
+};
+
 struct Progress {
   double fraction = 0;                 // of the whole job, 0 to 1, never falling
   std::string stage;                   // what is being done, for a person: "Factorising"
   std::optional<double> seconds_left;  // an estimate, once there is ground for one
+  std::vector<WorkPlace> places = {};  // from hosts that keep results; empty elsewhere
+};
+
+/// A result that another computer can make: everything it depends on.
+struct ResultTask {
+  std::string key;                          // under which the result is kept
+  std::string recipe;                       // for make_result() (job/make_result.h)
+  std::shared_ptr<const Bytes> input = {};  // large data that many recipes share
+  double work = 1;                          // expected time to make it, relative to others of this job
 };
 
 /// What the host (command line, worker, WASM) lends to a computation.
@@ -31,6 +48,11 @@ struct Host {
   /// it. Whoever claims keeps or releases.
   std::function<bool(const std::string& key)> claim_result = {};
   std::function<void(const std::string& key)> release_result = {};
+  /// Has other computers make results, tells of the share made so far, and returns when each is kept or is left to the
+  /// caller. May be empty. Called from the job's thread. Throws Error{cancelled}, and Error{invalid_input} where
+  /// nothing can be made there.
+  std::function<void(const std::vector<ResultTask>& tasks, const std::function<void(double fraction)>& made_share)>
+      make_results = {};
 };
 
 /// Carries the host through nested stages. `span` narrows the fraction that `progress` speaks of, so
@@ -74,6 +96,10 @@ class Context {
   /// See Host. True where nothing is shared. From any thread.
   bool claim_result(const std::string& key) const;
   void release_result(const std::string& key) const;
+
+  /// Whether other computers make results for this job: see Host.
+  bool has_helpers() const { return static_cast<bool>(host_.make_results); }
+  void make_results(const std::vector<ResultTask>& tasks, const std::string& stage);
 
  private:
   using Clock = std::chrono::steady_clock;

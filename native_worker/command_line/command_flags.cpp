@@ -179,11 +179,27 @@ std::vector<FlagInfo> operation_flags(const Operation& operation) {
     outputs += (outputs.empty() ? "" : ", ") + output.name + (output.made_by_default ? "*" : "");
   flags.push_back({"--out", "DIR", "Folder for the outputs and report.json.", "Files", FlagValue::folder});
   flags.push_back({"--outputs", "A,B", "Outputs to make: " + outputs + " (* without being asked).", "Files"});
-  if (operation.keeps_results)
+  if (operation.keeps_results) {
     flags.push_back(
         {"--results", "DIR",
          "Folder in which simulations are kept and found again. Default: OUT/simulations. Several runs and computers may share it.",
          "Files", FlagValue::folder});
+    flags.push_back(
+        {"--engine",
+         "local|slurm",
+         "Where simulations run: on this computer, or in a Slurm cluster whose nodes share the folder of --results. [default local]",
+         "Cluster",
+         FlagValue::choice,
+         {"local", "slurm"}});
+    flags.push_back(
+        {"--slurm-option", "OPTION",
+         "An option for sbatch, such as --mem=4G. May be given several times. The variables SBATCH_PARTITION, SBATCH_ACCOUNT and SBATCH_TIMELIMIT work without it.",
+         "Cluster"});
+    flags.push_back(
+        {"--local-seconds", "N",
+         "Simulations that this computer makes within this time stay here; 0 sends all to Slurm. [0 to 86400 s, default 5]",
+         "Cluster"});
+  }
   flags.push_back({"--quiet", "", "Prints no progress.", "Files", FlagValue::no_value});
   // Presets stand before the first parameter of their group.
   std::set<std::string> begun;

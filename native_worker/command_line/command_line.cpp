@@ -97,7 +97,8 @@ std::vector<FlagRule> rules_of(const Operation& operation) {
       rules.push_back({flag, info.kind == ParameterKind::boolean ? Value::optional : Value::one});
   for (const InputInfo& input : operation.inputs) rules.push_back({dashed(input.name)});
   for (const PresetList& list : operation.presets) rules.push_back({dashed(list.name)});
-  if (operation.keeps_results) rules.push_back({"--results"});
+  if (operation.keeps_results)
+    for (const char* flag : {"--results", "--engine", "--slurm-option", "--local-seconds"}) rules.push_back({flag});
   if (takes_object(operation)) rules.push_back({"--object"});
   return rules;
 }
@@ -111,6 +112,35 @@ const Json& values_of(const PresetList& list, const std::string& name) {
   }
   throw Error(ErrorCode::invalid_input, dashed(list.name),
               dashed(list.name) + " must be one of " + names + ", and is \"" + name + "\".");
+}
+
+/// Reads --engine and what belongs to it. Throws Error{invalid_input} naming the flag.
+void read_engine(const FlagValues& flags, ParsedCommand& command) {
+  const auto values_of_flag = [&](const char* flag) {
+    const auto found = flags.find(flag);
+    return found == flags.end() ? std::vector<std::string>() : found->second;
+  };
+  const std::vector<std::string> engine = values_of_flag("--engine"), seconds = values_of_flag("--local-seconds");
+  const std::string name = engine.empty() ? "local" : engine.back();
+  if (name != "local" && name != "slurm")
+    throw Error(ErrorCode::invalid_input, "--engine", "--engine must be local or slurm, and is \"" + name + "\".");
+  command.slurm = name == "slurm";
+  for (const char* flag : {"--slurm-option", "--local-seconds"})
+    if (!command.slurm && flags.contains(flag))
+      throw Error(ErrorCode::invalid_input, flag, std::string(flag) + " belongs to --engine slurm: add that.");
+  command.slurm_options.options = values_of_flag("--slurm-option");
+  for (const std::string& option : command.slurm_options.options)
+    if (!option.starts_with("-"))
+      throw Error(ErrorCode::invalid_input, "--slurm-option",
+                  "--slurm-option takes one option of sbatch, such as --mem=4G, and is \"" + option + "\".");
+  if (seconds.empty()) return;
+  char* end = nullptr;
+  const double value = std::strtod(seconds.back().c_str(), &end);
+  constexpr double longest_s = 86400;
+  if (seconds.back().empty() || *end != '\0' || !(value >= 0 && value <= longest_s))
+    throw Error(ErrorCode::invalid_input, "--local-seconds",
+                "--local-seconds must be a number from 0 to 86400, and is \"" + seconds.back() + "\".");
+  command.slurm_options.local_seconds = value;
 }
 
 /// The sentence for a word that is no flag of the operation.
@@ -146,6 +176,7 @@ ParsedCommand parse_command(const Operation& operation, const std::vector<std::s
   command.quiet = flags.contains("--quiet");
   command.out = last_of("--out");
   command.results = last_of("--results");
+  if (operation.keeps_results) read_engine(flags, command);
   if (flags.contains("--outputs")) command.message["outputs"] = split(last_of("--outputs"));
   Json parameters = Json::object(), inputs = Json::object();
   for (const ParameterInfo& info : operation.parameters)

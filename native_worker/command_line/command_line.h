@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "job/contract/operation.h"
+#include "slurm/slurm_engine.h"
 
 namespace formwright {
 
@@ -19,6 +20,8 @@ struct ParsedCommand {
   };
   std::map<std::string, FolderFiles> folders;  // of these, folders to pack
   std::filesystem::path out, results;  // results: where intermediate results are kept; empty for out/simulations
+  bool slurm = false;                  // simulations run in a Slurm cluster
+  SlurmOptions slurm_options;
   bool quiet = false, help = false;
 };
 

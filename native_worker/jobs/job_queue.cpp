@@ -216,10 +216,13 @@ void JobQueue::handle(const Json& message) {
                      {"id", running_},
                      {"fraction", message["fraction"]},
                      {"stage", message["stage"]},
-                     {"seconds_left", message["seconds_left"]}};
+                     {"seconds_left", message["seconds_left"]},
+                     {"places", message["places"]}};
     if (StoredJob* job = store_.find(running_))
-      job->progress = {
-          {"fraction", message["fraction"]}, {"stage", message["stage"]}, {"seconds_left", message["seconds_left"]}};
+      job->progress = {{"fraction", message["fraction"]},
+                       {"stage", message["stage"]},
+                       {"seconds_left", message["seconds_left"]},
+                       {"places", message["places"]}};
     tell_(progress);
   } else if (message.contains("finished") && message["finished"] == running_) {
     StoredJob* job = store_.find(running_);

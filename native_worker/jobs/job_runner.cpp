@@ -31,6 +31,7 @@
 #include "job/run.h"
 #include "jobs/job_runner.h"
 #include "jobs/solver_limits.h"
+#include "system/work_places.h"
 
 namespace formwright {
 namespace {
@@ -78,6 +79,13 @@ void send(const Json& message) {
   const std::string text = json_text(message);
   const std::scoped_lock lock(one_line);
   std::cout << text << std::endl;
+}
+
+Json places_json(const std::vector<WorkPlace>& places) {
+  Json list = Json::array();
+  for (const WorkPlace& place : places)
+    list.push_back({{"name", place.name}, {"running", place.running}, {"done", place.done}});
+  return list;
 }
 
 Json error_message(ErrorCode code, const std::string& sentence) { return error_json({code, "", sentence}); }
@@ -189,7 +197,8 @@ int run_jobs_for_server(const std::vector<std::string>& words) {
                   send({{"progress", id},
                         {"fraction", p.fraction},
                         {"stage", p.stage},
-                        {"seconds_left", p.seconds_left ? Json(*p.seconds_left) : Json(nullptr)}});
+                        {"seconds_left", p.seconds_left ? Json(*p.seconds_left) : Json(nullptr)},
+                        {"places", places_json(p.places)}});
                 },
                 [&] { return inbox.cancelled() || time.passed(); }, peak_memory_mb};
       if (!results.empty()) share_results(ResultFolder(results), host);

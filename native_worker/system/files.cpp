@@ -10,10 +10,10 @@
 #include <map>
 #include <vector>
 
-#include "base/context.h"
 #include "base/error.h"
 #include "base/sha256.h"
 #include "job/contract/file_pack.h"
+#include "system/host.h"
 
 namespace formwright {
 
@@ -93,34 +93,31 @@ std::optional<ClaimOwner> owner_of(const std::filesystem::path& claim) {
   return owner;
 }
 
-std::string this_machine() {
-  char name[256] = "";
-  ::gethostname(name, sizeof name - 1);
-  return name;
-}
-
-bool has_ended(const ClaimOwner& owner) { return owner.machine == this_machine() && !process_runs(owner.process); }
+bool has_ended(const ClaimOwner& owner) { return owner.machine == machine_name() && !process_runs(owner.process); }
 
 }  // namespace
 
-bool ResultFolder::claim(const std::string& key) const {
+std::optional<std::string> ResultFolder::claim_or_holder(const std::string& key) const {
   std::error_code status;
   std::filesystem::create_directories(folder_, status);
   const std::filesystem::path path = folder_ / (key + ".claim");
   // Linked when it is whole: a process that ends before then leaves no claim without an owner.
   const UploadFile own(temporary_name(path));
   std::ofstream text(own.path);
-  if (!(text << this_machine() << " " << ::getpid() << std::flush)) return true;  // nothing is shared on a full disk
+  if (!(text << machine_name() << " " << ::getpid() << std::flush))
+    return std::nullopt;                    // nothing is shared on a full disk
+  std::string holder = "another computer";  // where the claim goes before it is read
   for (int attempt = 0; attempt < 2; ++attempt) {
-    if (::link(own.path.c_str(), path.c_str()) == 0) return true;
-    if (errno != EEXIST) return true;  // nor where there are no hard links
+    if (::link(own.path.c_str(), path.c_str()) == 0) return std::nullopt;
+    if (errno != EEXIST) return std::nullopt;  // nor where there are no hard links
     const auto owner = owner_of(path);
     const auto written = std::filesystem::last_write_time(path, status);
     const bool old = !status && std::filesystem::file_time_type::clock::now() - written > std::chrono::minutes(10);
-    if (!(owner && has_ended(*owner)) && !old) return false;
+    if (owner) holder = owner->machine;
+    if (!(owner && has_ended(*owner)) && !old) return holder;
     std::filesystem::remove(path, status);
   }
-  return false;
+  return holder;
 }
 
 void ResultFolder::release(const std::string& key) const {
@@ -137,13 +134,6 @@ void ResultFolder::remove_abandoned() const {
   for (const auto& claim : claims)
     if (const auto owner = owner_of(claim); owner && (owner->process == ::getpid() || has_ended(*owner)))
       std::filesystem::remove(claim, status);
-}
-
-void share_results(const ResultFolder& folder, Host& host) {
-  host.find_result = [folder](const std::string& key) { return folder.find(key); };
-  host.keep_result = [folder](const std::string& key, const Bytes& bytes) { folder.keep(key, bytes); };
-  host.claim_result = [folder](const std::string& key) { return folder.claim(key); };
-  host.release_result = [folder](const std::string& key) { folder.release(key); };
 }
 
 std::string sha256_of_file(const std::filesystem::path& path) {

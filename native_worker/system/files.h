@@ -37,7 +37,9 @@ class ResultFolder {
   void keep(const std::string& key, const Bytes& result) const;
   /// True for the first process that asks, until it keeps or releases. A claim whose process is gone (on this machine),
   /// or that is older than ten minutes, counts no more.
-  bool claim(const std::string& key) const;
+  bool claim(const std::string& key) const { return !claim_or_holder(key); }
+  /// Nothing where claim() is true; else the name of the machine whose process has the claim.
+  std::optional<std::string> claim_or_holder(const std::string& key) const;
   void release(const std::string& key) const;
   /// Removes what processes of this machine that have ended left half done. This process must not use the folder: what
   /// has its number is of an earlier one.
@@ -46,9 +48,6 @@ class ResultFolder {
  private:
   std::filesystem::path folder_;
 };
-
-/// Lends the folder to jobs.
-void share_results(const ResultFolder& folder, struct Host& host);
 
 /// SHA-256 of a file without holding it in memory. Throws Error{internal} when it cannot be read.
 std::string sha256_of_file(const std::filesystem::path& path);

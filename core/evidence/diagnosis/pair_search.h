@@ -24,6 +24,9 @@ class AnchoredModel : public ForwardModel {
   bool claim(int object, const Eigen::VectorXd& u, const Context& context) const override {
     return cheap_.claim(object, u, context);
   }
+  std::optional<ResultTask> task(int object, const Eigen::VectorXd& u, const Context& context) const override {
+    return cheap_.task(object, u, context);
+  }
   Eigen::MatrixXd predict(int object, const Eigen::VectorXd& u, const Context& context) const override {
     return cheap_.predict(object, u, context) + correction_[static_cast<std::size_t>(object)];
   }

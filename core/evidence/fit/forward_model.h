@@ -3,6 +3,7 @@
 // What a diagnosis knows of a craft: a model that predicts measurable quantities from parameters, effects that extend
 // it, and data. Nothing here knows about sheets, reliefs or zippers.
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -91,6 +92,12 @@ class ForwardModel {
   /// False while another process makes this very prediction: ask for others first. From several threads at once. Asked
   /// of places only.
   virtual bool claim(int /*object*/, const Eigen::VectorXd& /*u*/, const Context& /*context*/) const { return true; }
+  /// What another computer needs to simulate `object` at `u`; nothing where that is made already, or where only this
+  /// one can. Asked of places only.
+  virtual std::optional<ResultTask> task(int /*object*/, const Eigen::VectorXd& /*u*/,
+                                         const Context& /*context*/) const {
+    return std::nullopt;
+  }
   /// The same objects and parameters, simulated more coarsely and several times as fast, for searching; null where
   /// there is no such model.
   virtual const ForwardModel* cheaper() const { return nullptr; }

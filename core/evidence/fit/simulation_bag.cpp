@@ -55,6 +55,14 @@ std::vector<std::optional<Predictions>> SimulationBag::run(const std::vector<Eig
   };
   try {
     context.progress(0, stage);
+    if (context.has_helpers()) {
+      std::vector<ResultTask> tasks;
+      for (std::size_t job = 0; job < jobs; ++job)
+        if (auto task = model_.task(static_cast<int>(groups[job % objects].front()), *missing[job / objects], context))
+          tasks.push_back(std::move(*task));
+      context.make_results(tasks, stage);
+    }
+    // What helpers have made is found here; what they could not make is made.
     parallel_for(jobs, 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t job = begin; job < end; ++job) {
         context.check_cancelled();

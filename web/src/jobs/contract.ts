@@ -21,10 +21,19 @@ export interface Job {
 
 export type Report = JsonObject;
 
+/** Where simulations of a job run, and how many; `name` is empty for the computer of the worker. */
+export interface WorkPlace {
+  readonly name: string;
+  readonly running: number;
+  readonly done: number;
+}
+
 export interface Progress {
   readonly fraction: number;
   readonly stage: string;
   readonly seconds_left: number | null;
+  /** Only from the worker. */
+  readonly places?: readonly WorkPlace[];
 }
 
 /** The contract's codes, and `unreachable`: the backend itself is gone, or does not know this page. */

@@ -10,6 +10,8 @@ export interface JobStripProps {
   readonly state: 'idle' | 'running' | 'done' | 'attention';
   readonly title: string;
   readonly detail: string;
+  /** Beside the detail; not announced, since it changes all the time. */
+  readonly figures?: string | undefined;
   readonly progress?: { readonly fraction: number; readonly seconds_left: number | null } | null;
   readonly onCancel?: (() => void) | undefined;
   /** Earlier results. */
@@ -24,7 +26,7 @@ const icons: Record<JobStripProps['state'], IconName> = {
 };
 
 /** Left, what runs or ran; right, earlier results. Stages are announced one by one, not every percent. */
-export function JobStrip({ state, title, detail, progress, onCancel, children }: JobStripProps) {
+export function JobStrip({ state, title, detail, figures, progress, onCancel, children }: JobStripProps) {
   const percent = Math.round(100 * (progress?.fraction ?? 0));
   return (
     <div class="job">
@@ -36,7 +38,7 @@ export function JobStrip({ state, title, detail, progress, onCancel, children }:
       </span>
       <div class="job-text">
         <strong>{title}</strong>
-        <span class="clip">{detail}</span>
+        <span class="clip">{figures ? `${detail} · ${figures}` : detail}</span>
       </div>
       {progress ? (
         <>

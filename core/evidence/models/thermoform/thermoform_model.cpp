@@ -3,12 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
-#include "base/sha256.h"
 #include "evidence/models/thermoform/cause_words.h"
 #include "evidence/models/thermoform/rim_thickness.h"
-#include "thermoform/sheet/sheet_mesh.h"
 
 namespace formwright {
 namespace {
@@ -21,42 +18,6 @@ constexpr std::size_t max_sheets = 200;  // kept at a time; about 0.2 MB each
 constexpr double known_thickness_misfit = 0.03;
 /// The same of the rim. It is not simulated: an assumption of how much sheets vary from place to place.
 constexpr double known_rim_misfit = 0.01;
-
-/// What later readers of a stored simulation must find unchanged; raised when the simulation computes something else.
-constexpr const char* simulation_version = "thermoform-2:";
-
-/// Vertices and thicknesses in single precision, as they are kept between runs; what is computed afresh is rounded
-/// alike.
-Bytes packed(const FormedSheet& sheet) {
-  const Eigen::Index n = sheet.mesh.V.rows();
-  std::vector<float> numbers;
-  for (Eigen::Index i = 0; i < n; ++i) {
-    for (int k = 0; k < 3; ++k) numbers.push_back(static_cast<float>(sheet.mesh.V(i, k)));
-    numbers.push_back(static_cast<float>(sheet.thickness_mm[i]));
-  }
-  Bytes bytes(numbers.size() * sizeof(float));
-  std::memcpy(bytes.data(), numbers.data(), bytes.size());
-  return bytes;
-}
-
-std::shared_ptr<const FormedSheet> unpacked(const Bytes& bytes, const ThermoformOptions& options) {
-  const SheetMesh flat = make_sheet_mesh(clamp_opening_mm(options), options.triangles);
-  const Eigen::Index n = flat.flat_mm.rows();
-  if (bytes.size() != static_cast<std::size_t>(n) * 4 * sizeof(float)) return nullptr;
-  std::vector<float> numbers(static_cast<std::size_t>(n) * 4);
-  std::memcpy(numbers.data(), bytes.data(), bytes.size());
-  auto sheet = std::make_shared<FormedSheet>();
-  sheet->mesh.V.resize(n, 3);
-  sheet->mesh.F = flat.F;
-  sheet->sheet_mm = flat.flat_mm;
-  sheet->thickness_mm.resize(n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    for (int k = 0; k < 3; ++k) sheet->mesh.V(i, k) = numbers[static_cast<std::size_t>(4 * i + k)];
-    sheet->thickness_mm[i] = numbers[static_cast<std::size_t>(4 * i + 3)];
-  }
-  if (!sheet->mesh.V.allFinite() || !sheet->thickness_mm.allFinite()) return nullptr;
-  return sheet;
-}
 
 /// Not of the material, which all objects share.
 bool is_set_by_hand(const ModelParameter& p) {
@@ -201,14 +162,13 @@ MeasurementEffects ThermoformModel::measurement_effects(const Eigen::VectorXd& u
   return read_parameters<MeasurementEffects>(values);
 }
 
-std::string ThermoformModel::key_of(const FormedObject& object, const ThermoformOptions& o) const {
-  const std::string text = simulation_version + object.key + ":" + std::to_string(object.setup.base_plate_end_z_mm) +
-                           ":" + write_parameters(o).dump();
-  return sha256_hex(as_bytes(text));
+SheetSimulation ThermoformModel::simulation_of(int object, const Eigen::VectorXd& u) const {
+  const FormedObject& own = objects_[static_cast<std::size_t>(object)];
+  return {own.key, own.setup.base_plate_end_z_mm, simulation_options(object, u)};
 }
 
 bool ThermoformModel::claim(int object, const Eigen::VectorXd& u, const Context& context) const {
-  const std::string key = key_of(objects_[static_cast<std::size_t>(object)], simulation_options(object, u));
+  const std::string key = simulation_of(object, u).key();
   {
     const std::scoped_lock lock(mutex_);
     if (sheets_.contains(key)) return true;
@@ -216,44 +176,51 @@ bool ThermoformModel::claim(int object, const Eigen::VectorXd& u, const Context&
   return context.find_result(key).has_value() || context.claim_result(key);
 }
 
+std::optional<ResultTask> ThermoformModel::task(int object, const Eigen::VectorXd& u, const Context& context) const {
+  const SheetSimulation simulation = simulation_of(object, u);
+  ResultTask task{simulation.key(), "", {}, static_cast<double>(simulation.options.triangles)};
+  const std::scoped_lock lock(mutex_);
+  if (sheets_.contains(task.key) || context.find_result(task.key)) return std::nullopt;
+  packed_moulds_.resize(objects_.size());
+  auto& mould = packed_moulds_[static_cast<std::size_t>(object)];
+  if (!mould)
+    mould = std::make_shared<const Bytes>(packed_mould(objects_[static_cast<std::size_t>(object)].mould->mesh));
+  task.recipe = simulation_recipe(simulation).dump();
+  task.input = mould;
+  return task;
+}
+
 std::shared_ptr<const FormedSheet> ThermoformModel::formed(int object, const Eigen::VectorXd& u,
                                                            const Context& context) const {
   const FormedObject& own = objects_[static_cast<std::size_t>(object)];
-  const ThermoformOptions o = simulation_options(object, u);
-  const std::string key = key_of(own, o);
+  const SheetSimulation simulation = simulation_of(object, u);
+  const std::string key = simulation.key();
   {
     const std::scoped_lock lock(mutex_);
     if (const auto known = sheets_.find(key); known != sheets_.end()) return known->second;
   }
   std::shared_ptr<const FormedSheet> sheet;
-  if (const auto stored = context.find_result(key)) {
-    sheet = unpacked(*stored, o);
-    if (sheet) context.release_result(key);
-  }
-  if (!sheet) {
-    Context silent(Host{{}, [&context] { return context.cancelled(); }, {}});
-    Placement as_it_is;
-    as_it_is.translation.z() = -own.setup.base_plate_end_z_mm;
-    FormedResult result;
-    try {
-      result = form_sheet(own.mould, as_it_is, o, silent);
-    } catch (const Error& error) {
-      context.release_result(key);
-      // A mould pushed out of the opening is no fault of the maker's here, but a place where there is no answer.
-      if (error.code() == ErrorCode::invalid_input && u.cwiseAbs().maxCoeff() > 0)
-        throw Error(ErrorCode::could_not_solve, error.where(), error.what());
-      if (error.code() == ErrorCode::invalid_input)
-        throw Error(error.code(), error.where(), own.name + ": " + error.what());
-      throw;
-    } catch (...) {
-      context.release_result(key);
-      throw;
+  try {
+    if (const auto stored = context.find_result(key)) {
+      sheet = kept_sheet(*stored, simulation.options);
+      if (sheet) context.release_result(key);
     }
-    const Bytes bytes = packed(result.sheet);
-    sheet = unpacked(bytes, o);
-    if (sheet) context.keep_result(key, bytes);
-    else context.release_result(key);
-    if (!sheet) throw Error(ErrorCode::could_not_solve, "", "The simulation gave no finite sheet.");
+    if (!sheet) {
+      const Bytes bytes = simulated(simulation, own.mould, context);
+      context.keep_result(key, bytes);
+      sheet = kept_sheet(bytes, simulation.options);
+    }
+  } catch (const Error& error) {
+    context.release_result(key);
+    // A mould pushed out of the opening is no fault of the maker's here, but a place where there is no answer.
+    if (error.code() == ErrorCode::invalid_input && u.cwiseAbs().maxCoeff() > 0)
+      throw Error(ErrorCode::could_not_solve, error.where(), error.what());
+    if (error.code() == ErrorCode::invalid_input)
+      throw Error(error.code(), error.where(), own.name + ": " + error.what());
+    throw;
+  } catch (...) {
+    context.release_result(key);
+    throw;
   }
   const std::scoped_lock lock(mutex_);
   if (sheets_.size() >= max_sheets) sheets_.clear();

@@ -9,6 +9,7 @@
 
 #include "evidence/fit/forward_model.h"
 #include "evidence/models/thermoform/formed_object.h"
+#include "evidence/models/thermoform/sheet_simulation.h"
 #include "thermoform/forming.h"
 #include "thermoform/machine_profile.h"
 
@@ -33,6 +34,7 @@ class ThermoformModel : public ForwardModel {
   const std::vector<Measurement>& measurements() const override { return measurements_; }
   Eigen::MatrixXd predict(int measurement, const Eigen::VectorXd& u, const Context& context) const override;
   bool claim(int object, const Eigen::VectorXd& u, const Context& context) const override;
+  std::optional<ResultTask> task(int object, const Eigen::VectorXd& u, const Context& context) const override;
   double known_misfit() const override { return 0.08; }
   std::string in_words(int cause, const std::vector<double>& values) const override;
   /// On a quarter of the triangles, where that leaves enough of them.
@@ -56,8 +58,7 @@ class ThermoformModel : public ForwardModel {
  private:
   void add_places(const FormedObject& object);
   void add_thickness(int object, std::vector<MeasuredThickness> readings, const char* what, double misfit_share);
-  /// Names a simulation: everything it depends on.
-  std::string key_of(const FormedObject& object, const ThermoformOptions& options) const;
+  SheetSimulation simulation_of(int object, const Eigen::VectorXd& u) const;
 
   std::vector<FormedObject> objects_;
   ThermoformModelOptions options_;
@@ -68,6 +69,7 @@ class ThermoformModel : public ForwardModel {
   std::unique_ptr<const ThermoformModel> cheaper_;
   mutable std::mutex mutex_;
   mutable std::unique_ptr<const ThermoformModel> finer_;
+  mutable std::vector<std::shared_ptr<const Bytes>> packed_moulds_;  // of the objects; null until a task needs them
   mutable std::map<std::string, std::shared_ptr<const FormedSheet>> sheets_;
 };
 

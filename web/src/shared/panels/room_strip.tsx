@@ -2,6 +2,7 @@
 // What every room's job strip says: what runs, or how the preview stands.
 import { formatCount, formatDuration, JobStrip } from '../../ui';
 import type { Activity } from '../session/room_session';
+import { placesText } from './work_places';
 
 export type RunningActivity = Exclude<Activity, { kind: 'idle' }>;
 
@@ -17,6 +18,7 @@ export function RunningStrip({ activity, titles, onCancel }: RunningStripProps) 
       state="running"
       title={titles[activity.kind]}
       detail={activity.progress?.stage ?? (activity.kind === 'opening' ? activity.name : 'Starting')}
+      figures={placesText(activity.progress?.places)}
       progress={activity.progress ?? { fraction: 0, seconds_left: null }}
       onCancel={onCancel}
     />

@@ -13,8 +13,8 @@
 namespace formwright {
 namespace {
 
-constexpr double unseen_distance = 1e6;     // whitened, of what lies behind its camera
-constexpr double gauge_sigma_mm = 1e-3;     // how exactly the strips' mean shift is held at 0
+constexpr double unseen_distance = 1e6;        // whitened, of what lies behind its camera
+constexpr double gauge_sigma_mm = 1e-3;        // how exactly the strips' mean shift is held at 0
 constexpr double median_of_rayleigh = 1.1774;  // median length of a vector of two standard normals
 constexpr int shared_max = Lens::unknowns + Pose::unknowns + StripPlace::unknowns;
 
@@ -275,9 +275,7 @@ class Adjustment {
   }
 
  private:
-  const Row* row(std::size_t observation) const {
-    return rows_[observation] ? &*rows_[observation] : nullptr;
-  }
+  const Row* row(std::size_t observation) const { return rows_[observation] ? &*rows_[observation] : nullptr; }
   std::vector<Eigen::Matrix<double, shared_max, 3>> couplings(std::size_t p) const {
     std::vector<Eigen::Matrix<double, shared_max, 3>> c;
     for (const std::size_t o : of_point_[p]) {
@@ -379,8 +377,7 @@ double whitened_distance(const Bundle& bundle, const BundleObservation& o) {
   return std::min(unseen_distance, (whitening(o.covariance_px2) * (*at - o.picture_px)).norm());
 }
 
-BundleFit adjust_bundle(Bundle& bundle, bool robust, bool with_covariance, int max_iterations,
-                        const Context& context) {
+BundleFit adjust_bundle(Bundle& bundle, bool robust, bool with_covariance, int max_iterations, const Context& context) {
   const Error not_solved(ErrorCode::could_not_solve, "",
                          "The photographs do not determine the cameras: take more of them, from more sides, "
                          "with all four strips in view.");

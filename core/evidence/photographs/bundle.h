@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Bundle adjustment [TMHF00]: cameras, lenses, the strips of the board and the points of the sheet that together explain
-// best where everything was seen, and how sure each point is.
+// Bundle adjustment [TMHF00]: cameras, lenses, the strips of the board and the points of the sheet that together
+// explain best where everything was seen, and how sure each point is.
 #include <array>
 #include <vector>
 
@@ -25,8 +25,8 @@ struct BundleCamera {
 /// A corner of a mark, seen in one photograph. Either on a strip or a point of the sheet.
 struct BundleObservation {
   int camera = 0;
-  int strip = -1;            // 0 to 3, or -1
-  int point = -1;            // of the sheet, or -1
+  int strip = -1;             // 0 to 3, or -1
+  int point = -1;             // of the sheet, or -1
   Vec2 from_origin_mm{0, 0};  // on a strip: from its origin, in the machine's axes
   Vec2 picture_px{0, 0};
   Eigen::Matrix2d covariance_px2 = Eigen::Matrix2d::Identity();
@@ -52,8 +52,8 @@ struct Bundle {
 };
 
 struct BundleFit {
-  double noise = 1;               // the observations' standard deviations are to be multiplied by this
-  double rms_px = 0;              // of what is left, used observations
+  double noise = 1;   // the observations' standard deviations are to be multiplied by this
+  double rms_px = 0;  // of what is left, used observations
   int iterations = 0;
   bool converged = false;
   std::vector<Eigen::Matrix3d> covariance_mm2;  // per point, of the cameras' and its own uncertainty; only where asked

@@ -17,10 +17,9 @@ std::optional<double> focal_of_maps(std::span<const PlaneMap> maps, double scale
     b.head<2>() /= scale_px;
     const double size = a.norm() * b.norm();
     if (!(size > 0)) continue;
-    for (const auto& [p, q] :
-         {std::pair{a.head<2>().dot(b.head<2>()) / size, a.z() * b.z() / size},
-          std::pair{(a.head<2>().squaredNorm() - b.head<2>().squaredNorm()) / size,
-                    (a.z() * a.z() - b.z() * b.z()) / size}}) {
+    for (const auto& [p, q] : {std::pair{a.head<2>().dot(b.head<2>()) / size, a.z() * b.z() / size},
+                               std::pair{(a.head<2>().squaredNorm() - b.head<2>().squaredNorm()) / size,
+                                         (a.z() * a.z() - b.z() * b.z()) / size}}) {
       numerator -= p * q;
       denominator += q * q;  // solves for focal^2 = -p / q, weighted by q^2
     }

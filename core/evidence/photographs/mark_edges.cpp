@@ -12,14 +12,16 @@
 namespace formwright {
 namespace {
 
-constexpr double used_share = 0.88;     // of an edge's length: at its ends the other edge's blur bends it
-constexpr int max_profiles = 64;        // along an edge
+constexpr double used_share = 0.88;  // of an edge's length: at its ends the other edge's blur bends it
+constexpr int max_profiles = 64;     // along an edge
 constexpr int min_profiles = 8;
-constexpr double reach_cells = 0.7;     // of a profile, to each side: a cell farther in other cells begin
+constexpr double reach_cells = 0.5;  // of a profile, to each side: a cell inside of the edge other cells begin
 constexpr double max_reach_px = 12;
+constexpr double dark_share = 0.2;      // of an edge's profiles, that end beside a black cell
 constexpr double min_contrast = 1500;   // of 65535 of light between black and white
 constexpr double min_kept = 0.6;        // of an edge's profiles, for the edge to count
-constexpr double floor_px = 0.02;       // a pixel's own errors (demosaicing, compression) do not average out
+constexpr double floor_px = 0.02;       // least scatter of an edge that is believed
+constexpr double own_error_px = 0.06;   // of a corner: pixels, compression and blur that no scatter shows
 constexpr double alike_profiles = 2.0;  // neighbouring profiles share pixels and blur: so many count as one
 
 /// offset(s) = c0 + c1 s + c2 s^2 across the chord, s from -1 to 1 along it.
@@ -37,19 +39,26 @@ struct Edge {
   }
 };
 
-/// Where the profile through `foot` along `normal` is halfway between its inner and its outer end.
-std::optional<double> crossing(const LightPicture& picture, const Vec2& foot, const Vec2& normal, double reach) {
+/// Where a profile crosses a level, and the light at its ends.
+struct Crossing {
+  double offset = 0, inner = 0, outer = 0;
+};
+
+/// The profile through `foot` along `normal`: where it is halfway between its inner and its outer end, or at `level`.
+std::optional<Crossing> crossing(const LightPicture& picture, const Vec2& foot, const Vec2& normal, double reach,
+                                 std::optional<double> common_level) {
   double centre = 0;
+  Crossing found;
   for (int round = 0; round < 3; ++round) {
     constexpr int half_count = 12;
     std::array<double, 2 * half_count + 1> value;
     const double step = reach / half_count;
     for (int i = -half_count; i <= half_count; ++i)
       value[static_cast<std::size_t>(i + half_count)] = picture.bilinear(foot + (centre + i * step) * normal);
-    const double inner = (value[0] + value[1] + value[2]) / 3,
-                 outer = (value[2 * half_count] + value[2 * half_count - 1] + value[2 * half_count - 2]) / 3;
-    if (outer - inner < min_contrast) return std::nullopt;
-    const double level = 0.5 * (inner + outer);
+    found.inner = (value[0] + value[1] + value[2]) / 3;
+    found.outer = (value[2 * half_count] + value[2 * half_count - 1] + value[2 * half_count - 2]) / 3;
+    if (found.outer - found.inner < min_contrast) return std::nullopt;
+    const double level = common_level.value_or(0.5 * (found.inner + found.outer));
     double best = 2 * reach;
     for (int i = -half_count; i < half_count; ++i) {
       const double a = value[static_cast<std::size_t>(i + half_count)],
@@ -63,7 +72,8 @@ std::optional<double> crossing(const LightPicture& picture, const Vec2& foot, co
     if (std::abs(centre) > 1.5 * reach) return std::nullopt;
     if (std::abs(best) < 0.01) break;
   }
-  return centre;
+  found.offset = centre;
+  return found;
 }
 
 std::optional<Edge> fit_edge(const LightPicture& picture, const Vec2& from, const Vec2& to, double reach) {
@@ -74,13 +84,24 @@ std::optional<Edge> fit_edge(const LightPicture& picture, const Vec2& from, cons
   if (!(length > 6)) return std::nullopt;
   edge.normal = Vec2(edge.half.y(), -edge.half.x()).normalized();  // clockwise, y down: outwards
   const int count = std::clamp(static_cast<int>(used_share * length), min_profiles, max_profiles);
-  std::vector<Vec2> places;  // s, offset
-  for (int i = 0; i < count; ++i) {
-    const double s = used_share * (2 * (i + 0.5) / count - 1);
-    if (const auto t = crossing(picture, edge.middle + s * edge.half, edge.normal, reach)) places.emplace_back(s, *t);
-  }
   const double least = std::max<double>(min_profiles - 2, min_kept * count);
-  if (static_cast<double>(places.size()) < least) return std::nullopt;
+  std::vector<Vec2> places;  // s, offset
+  std::optional<double> level;
+  for (int pass = 0; pass < 2; ++pass) {
+    places.clear();
+    std::vector<double> inner, outer;
+    for (int i = 0; i < count; ++i) {
+      const double s = used_share * (2 * (i + 0.5) / count - 1);
+      const auto found = crossing(picture, edge.middle + s * edge.half, edge.normal, reach, level);
+      if (!found) continue;
+      places.emplace_back(s, found->offset);
+      inner.push_back(found->inner);
+      outer.push_back(found->outer);
+    }
+    if (static_cast<double>(places.size()) < least) return std::nullopt;
+    // White cells behind the border shine through it where the picture is blurred: the darkest fifth shows black.
+    level = 0.5 * (quantile(inner, dark_share) + median(outer));
+  }
   std::vector<double> weight(places.size(), 1.0);
   double sigma = 0, kept = 0;
   for (int round = 0; round < 5; ++round) {
@@ -151,7 +172,7 @@ std::optional<SquareCorners> refine_once(const LightPicture& picture, const std:
     across << along_a.y(), -along_a.x(), along_b.y(), -along_b.x();
     const Eigen::Matrix2d back = across.inverse();
     result.covariance_px2[k] = back * Vec2(a.variance(s_a), b.variance(s_b)).asDiagonal() * back.transpose() +
-                               floor_px * floor_px * Eigen::Matrix2d::Identity();
+                               own_error_px * own_error_px * Eigen::Matrix2d::Identity();
     if (!result.covariance_px2[k].allFinite()) return std::nullopt;
   }
   return result;

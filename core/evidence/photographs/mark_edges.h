@@ -4,7 +4,7 @@
 #include <array>
 #include <optional>
 
-#include "evidence/photographs/light_picture.h"
+#include "imaging/picture/light_picture.h"
 
 namespace formwright {
 

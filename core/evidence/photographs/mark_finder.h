@@ -19,8 +19,7 @@ struct SeenMarks {
   bool cut_short = false;       // more outlines than are looked at: a busy background
 };
 
-/// Dark outlines of four corners (OpenCV: adaptiveThreshold [WR83], findContours [SA85], approxPolyDP [DP73]) on the
-/// picture reduced to 4096 pixels, then corners and cells on the picture itself. Throws Error{cancelled}.
+/// Dark quadrilaterals whose corners are refined and whose cells are read. Throws Error{cancelled}.
 SeenMarks find_coded_marks(const LightPicture& picture, const Context& context);
 
 }  // namespace formwright

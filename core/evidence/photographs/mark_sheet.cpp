@@ -66,7 +66,8 @@ BoardStrip board_strip(const MarkSheetPlan& plan, int side, const std::vector<in
     refuse_value("board_mark_mm", "The strips are too short for three marks each: make the board's marks smaller.");
   for (int i = 0; i < count; ++i) {
     if (next >= numbers.size())
-      refuse_value("mark_pitch_mm", "There are 1000 different marks, and this sheet needs more: raise the spacing of the marks.");
+      refuse_value("mark_pitch_mm",
+                   "There are 1000 different marks, and this sheet needs more: raise the spacing of the marks.");
     strip.marks.push_back({numbers[next++], Vec2((i - 0.5 * (count - 1)) * pitch, -edge - 0.5 * mark), mark});
   }
   strip.lower_mm = {-0.5 * length, -2 * edge - mark};

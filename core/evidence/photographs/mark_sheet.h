@@ -30,8 +30,8 @@ struct PlacedMark {
 struct BoardStrip {
   std::string name;  // "front", then counter-clockwise seen from above
   std::vector<PlacedMark> marks;
-  Vec2 origin_mm{0, 0};       // where its origin is to lie, in machine coordinates
-  int quarter_turns = 0;      // of its coordinates against the machine's, counter-clockwise
+  Vec2 origin_mm{0, 0};                 // where its origin is to lie, in machine coordinates
+  int quarter_turns = 0;                // of its coordinates against the machine's, counter-clockwise
   Vec2 lower_mm{0, 0}, upper_mm{0, 0};  // the paper
 
   /// Where a point of the strip is to lie.
@@ -56,8 +56,8 @@ struct MarkSheet {
 /// Throws Error{invalid_input}: no room for marks, or more than there are numbers.
 MarkSheet make_mark_sheet(const MarkSheetPlan& plan);
 
-/// Draws marks into a picture whose middle is `middle_mm`, y upwards; smooth edges by area. Every machine draws the same
-/// bits.
+/// Draws marks into a picture whose middle is `middle_mm`, y upwards; smooth edges by area. Every machine draws the
+/// same bits.
 void draw_marks(Image& image, double pixel_mm, const Vec2& middle_mm, const std::vector<PlacedMark>& marks);
 
 /// The four strips on one or two A4 pages at true size, to be cut out.

@@ -149,6 +149,8 @@ Json mark_sheet_json(const MarkSheet& sheet) {
     json["strips"].push_back({{"name", s.name},
                               {"origin_mm", {s.origin_mm.x(), s.origin_mm.y()}},
                               {"quarter_turns", s.quarter_turns},
+                              {"lower_mm", {s.lower_mm.x(), s.lower_mm.y()}},
+                              {"upper_mm", {s.upper_mm.x(), s.upper_mm.y()}},
                               {"marks", marks_json(s.marks)}});
   return json;
 }
@@ -184,6 +186,8 @@ MarkSheet read_mark_sheet(ByteView bytes) {
     strip.name = name.is_string() ? name.get<std::string>().substr(0, 40) : "";
     strip.origin_mm = pair_of(strips[k], "origin_mm", 3000);
     strip.quarter_turns = static_cast<int>(number_at(Json{member(strips[k], "quarter_turns")}, 0, 0, 3));
+    strip.lower_mm = pair_of(strips[k], "lower_mm", 3000);
+    strip.upper_mm = pair_of(strips[k], "upper_mm", 3000);
     strip.marks = marks_of(strips[k], length("board_mark_mm"));
     take(strip.marks);
   }

@@ -15,7 +15,10 @@
 namespace formwright {
 namespace {
 
-constexpr double far_strip_mm = 5;           // a strip farther off than this deserves a word
+constexpr double far_strip_mm = 5;  // a strip farther off than this deserves a word
+// Pixels of a corner's error that all photographs share, so that it does not average out: compression and blur act
+// alike on the same mark. Measured on rendered photographs (tests/bench/evidence/bench_photographs.cpp).
+constexpr double shared_px = 0.04;
 constexpr double other_scale_tolerance = 0.25;  // of spacing against size of marks, with which a sheet is another
 
 double printed_scale(const MarkSheet& sheet, const PhotographOptions& options) {
@@ -47,9 +50,18 @@ void check_spacing(const MarkSheet& sheet, const PhotographSolution& solution) {
   if (ratios.size() < 5) return;
   const double ratio = median(ratios);
   if (std::abs(ratio - 1) > other_scale_tolerance)
-    throw Error(ErrorCode::invalid_input, "pattern",
-                "The marks lie " + with_max_decimals(ratio, 2) +
-                    " times as far apart as pattern.json says: give the one that was written with the print on this sheet.");
+    throw Error(
+        ErrorCode::invalid_input, "pattern",
+        "The marks lie " + with_max_decimals(ratio, 2) +
+            " times as far apart as pattern.json says: give the one that was written with the print on this sheet.");
+}
+
+/// The size of a pixel at a point, in mm across the line of sight; the mean over the cameras.
+double pixel_at(const Bundle& bundle, const Vec3& place) {
+  double sum = 0;
+  for (const BundleCamera& camera : bundle.cameras)
+    sum += (place - camera.pose.centre()).norm() / bundle.lenses[index(camera.lens)].focal_px;
+  return sum / static_cast<double>(bundle.cameras.size());
 }
 
 void add_points_of(PhotographMeasurement& m, const PhotographSolution& solution, const MarkSheet& sheet,
@@ -68,7 +80,9 @@ void add_points_of(PhotographMeasurement& m, const PhotographSolution& solution,
     const Vec3& place = solution.bundle.points[index(p)];
     // A board of another size makes everything larger about its middle.
     const double systematic = scale_sigma * (place - middle).norm();
-    const double variance = (solution.fit.covariance_mm2[index(p)].trace() + systematic * systematic) / 3;
+    const double shared = shared_px * pixel_at(solution.bundle, place);
+    const double variance =
+        (solution.fit.covariance_mm2[index(p)].trace() + systematic * systematic) / 3 + shared * shared;
     const double sigma = std::sqrt(std::max(variance, 1e-12));
     if (!(sigma <= options.max_sigma_mm) || !place.allFinite()) {
       if (sight > MarkSight::uncertain) sight = MarkSight::uncertain;
@@ -87,11 +101,16 @@ void note_sights(PhotographMeasurement& m) {
     if (const auto n = count(sight); n > 0)
       m.notes.push_back(std::to_string(n) + " of " + std::to_string(all) + " marks " + what);
   };
-  note(MarkSight::not_seen, "were not found in any photograph: they are hidden, in glare, or stretched beyond reading. Take photographs that look at these places.");
-  note(MarkSight::seen_once, "were found in one photograph only, which gives no depth: take another one of these places from a different side.");
+  note(
+      MarkSight::not_seen,
+      "were not found in any photograph: they are hidden, in glare, or stretched beyond reading. Take photographs that look at these places.");
+  note(
+      MarkSight::seen_once,
+      "were found in one photograph only, which gives no depth: take another one of these places from a different side.");
   note(MarkSight::unclear, "were read but are not clear enough to measure: hold the camera still and go nearer.");
   note(MarkSight::small_angle, "were seen from nearly the same direction only: take photographs from farther apart.");
-  note(MarkSight::uncertain, "are less certain than asked for and were left out: take more and nearer photographs of them.");
+  note(MarkSight::uncertain,
+       "are less certain than asked for and were left out: take more and nearer photographs of them.");
 }
 
 }  // namespace
@@ -116,8 +135,8 @@ PhotographMeasurement measure_photographs(std::span<const Photograph> photograph
   m.sights.assign(sheet.marks.size(), MarkSight::not_seen);
   m.photographs_of.assign(sheet.marks.size(), 0);
   for (const ReadPhotograph& r : read) {
-    m.cameras.push_back({r.file_name, r.width, r.height, static_cast<int>(r.sheet.size()),
-                         static_cast<int>(r.board.size())});
+    m.cameras.push_back(
+        {r.file_name, r.width, r.height, static_cast<int>(r.sheet.size()), static_cast<int>(r.board.size())});
     for (const int mark : r.unclear) m.sights[index(mark)] = MarkSight::unclear;
   }
   for (std::size_t i = 0; i < solution.photograph_of_camera.size(); ++i) {
@@ -146,8 +165,9 @@ PhotographMeasurement measure_photographs(std::span<const Photograph> photograph
     const StripPlace& s = solution.bundle.strips[k];
     squares += s.shift_mm.squaredNorm() / 4;
     if (s.shift_mm.norm() > far_strip_mm)
-      m.notes.push_back("The " + sheet.strips[k].name + " strip lies " + with_max_decimals(s.shift_mm.norm(), 1) +
-                        " mm from where it should: lay its edge along the opening and its tick at the bar's middle, or the points are shifted.");
+      m.notes.push_back(
+          "The " + sheet.strips[k].name + " strip lies " + with_max_decimals(s.shift_mm.norm(), 1) +
+          " mm from where it should: lay its edge along the opening and its tick at the bar's middle, or the points are shifted.");
   }
   m.board_misfit_mm = std::sqrt(squares);
   note_sights(m);

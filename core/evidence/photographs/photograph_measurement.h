@@ -34,7 +34,8 @@ struct PhotographOptions {
           .group("Board")
           .slider(0, 300),
       parameter(
-          "board_check_sigma_mm", &PhotographOptions::board_check_sigma_mm, "Error of the check length", unit::mm, 0, 10,
+          "board_check_sigma_mm", &PhotographOptions::board_check_sigma_mm, "Error of the check length", unit::mm, 0,
+          10,
           "Standard deviation of the check length, which makes all lengths wrong alike. It is added to every point's uncertainty. A steel ruler: 0.1 mm.")
           .group("Board")
           .slider(0, 0.5),
@@ -82,14 +83,14 @@ struct CameraReport {
 
 struct PhotographMeasurement {
   std::vector<PhotographedPoint> points;
-  std::vector<MarkSight> sights;        // per mark of the sheet
-  std::vector<int> photographs_of;      // per mark: in how many of the photographs used its corners were found
-  std::vector<CameraReport> cameras;    // one per photograph that was given
+  std::vector<MarkSight> sights;      // per mark of the sheet
+  std::vector<int> photographs_of;    // per mark: in how many of the photographs used its corners were found
+  std::vector<CameraReport> cameras;  // one per photograph that was given
   std::vector<Lens> lenses;
-  double rms_px = 0;         // of what is left between corners as seen and as explained
-  double noise = 0;          // how many times larger the errors are than the edges of the marks let expect
+  double rms_px = 0;  // of what is left between corners as seen and as explained
+  double noise = 0;   // how many times larger the errors are than the edges of the marks let expect
   int observations = 0, outliers = 0;
-  double board_scale = 1;    // as printed, of nominal
+  double board_scale = 1;      // as printed, of nominal
   double board_misfit_mm = 0;  // RMS shift of the strips from where they should lie
   std::vector<std::string> notes;
   double seconds_find = 0, seconds_solve = 0;

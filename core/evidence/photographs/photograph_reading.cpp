@@ -83,12 +83,15 @@ void check_marks(const std::vector<ReadPhotograph>& read) {
         "The marks on the sheet are mirrored, left and right exchanged, in " + names +
             ": print the pattern with “mirror” switched the other way, or mirror the print before it goes onto the sheet.");
   if (static_cast<std::size_t>(foreign) > sheet + board)
-    refuse_photographs("pattern", "Most marks in " + names +
-                                      " do not belong to this pattern.json: give the one that was written with the print on this sheet.");
+    refuse_photographs(
+        "pattern",
+        "Most marks in " + names +
+            " do not belong to this pattern.json: give the one that was written with the print on this sheet.");
   if (sheet + board == 0)
-    refuse_photographs("photograph",
-                       "No coded marks were found in " + names +
-                           ": photograph the printed sheet with its strips, sharp, in even light, and fill the picture with it.");
+    refuse_photographs(
+        "photograph",
+        "No coded marks were found in " + names +
+            ": photograph the printed sheet with its strips, sharp, in even light, and fill the picture with it.");
 }
 
 }  // namespace
@@ -110,8 +113,9 @@ std::vector<ReadPhotograph> read_photographs(std::span<const Photograph> photogr
     }
     read.push_back(read_one(photograph, owners, context));
     if (read.back().cut_short)
-      notes.push_back(photograph.file_name +
-                      " has a busy background, of which not every outline was looked at: fill the picture with the sheet.");
+      notes.push_back(
+          photograph.file_name +
+          " has a busy background, of which not every outline was looked at: fill the picture with the sheet.");
   }
   if (read.size() < 2)
     refuse_photographs("photograph",

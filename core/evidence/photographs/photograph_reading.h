@@ -21,7 +21,7 @@ struct ReadPhotograph {
   };
   std::vector<OnBoard> board;
   std::vector<OnSheet> sheet;
-  std::vector<int> unclear;       // marks of the sheet that were read but not measured
+  std::vector<int> unclear;  // marks of the sheet that were read but not measured
   int foreign = 0, mirrored_sheet = 0, mirrored_board = 0;
   bool cut_short = false;
 };

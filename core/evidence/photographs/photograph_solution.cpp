@@ -18,8 +18,8 @@ constexpr int min_board_marks_seen = 4;
 constexpr int min_strips_seen = 2;
 constexpr std::array<double, 4> usual_focal_lengths{0.75, 0.55, 1.1, 2.0};  // of the picture's longer side
 constexpr int start_iterations = 15, iterations = 60;
-constexpr double outlier_distance = 4.5;  // usual distances
-constexpr double worst_start_px = 0.01;   // of the longer side: what a point may be off before the adjustment
+constexpr double outlier_distance = 4.5;   // usual distances
+constexpr double worst_start_px = 0.01;    // of the longer side: what a point may be off before the adjustment
 constexpr double worst_camera_px = 0.004;  // of the longer side: RMS of a photograph in which the board has moved
 
 const char* const board_in_view = "keep the strips on the clamp frame in view, all four if possible";
@@ -100,8 +100,9 @@ void solve_board(Bundle& bundle, const std::vector<PlaneMap>& maps, const Contex
     }
   }
   if (!best)
-    throw Error(ErrorCode::could_not_solve, "photograph",
-                "The cameras could not be found from the board: lay the strips as board.pdf says and take more photographs, from all sides.");
+    throw Error(
+        ErrorCode::could_not_solve, "photograph",
+        "The cameras could not be found from the board: lay the strips as board.pdf says and take more photographs, from all sides.");
   bundle = *best;
 }
 
@@ -155,7 +156,8 @@ void drop_weak_points(PhotographSolution& solution) {
       points.push_back(b.points[p]);
     }
   b.points = std::move(points);
-  std::erase_if(b.observations, [&](const BundleObservation& o) { return o.point >= 0 && renumbered[index(o.point)] < 0; });
+  std::erase_if(b.observations,
+                [&](const BundleObservation& o) { return o.point >= 0 && renumbered[index(o.point)] < 0; });
   for (BundleObservation& o : b.observations)
     if (o.point >= 0) o.point = renumbered[index(o.point)];
   for (int& p : solution.point_of_corner)
@@ -199,6 +201,7 @@ std::vector<BundleObservation> board_observations(const ReadPhotograph& read, co
 std::vector<BoardView> board_views(const std::vector<ReadPhotograph>& photographs, const MarkSheet& sheet,
                                    const Bundle& bundle, double scale, std::vector<std::string>& notes) {
   std::vector<BoardView> views;
+  std::string first_without;
   for (std::size_t i = 0; i < photographs.size(); ++i) {
     const ReadPhotograph& read = photographs[i];
     std::set<int> strips;
@@ -209,6 +212,7 @@ std::vector<BoardView> board_views(const std::vector<ReadPhotograph>& photograph
         static_cast<int>(strips.size()) >= min_strips_seen)
       map = board_map(read, bundle, view.seen);
     if (!map) {
+      if (first_without.empty()) first_without = read.file_name;
       notes.push_back(read.file_name + " was left out, because it shows " + std::to_string(read.board.size()) +
                       " marks of " + std::to_string(strips.size()) + " strips of the board: " + board_in_view + ".");
       continue;
@@ -219,8 +223,8 @@ std::vector<BoardView> board_views(const std::vector<ReadPhotograph>& photograph
   if (views.size() < 2)
     throw Error(ErrorCode::invalid_input, "photograph",
                 std::string(views.empty() ? "None of the photographs shows" : "Only one of the photographs shows") +
-                    " enough of the printed board (" + (notes.empty() ? std::string() : notes.back() + " ") +
-                    "Two are needed): " + board_in_view + ".");
+                    " enough of the printed board, four marks on two strips at least (see " + first_without +
+                    "): " + board_in_view + ".");
   return views;
 }
 
@@ -326,8 +330,9 @@ PhotographSolution solve_photographs(const std::vector<ReadPhotograph>& photogra
     const std::vector<int> moved = moved_cameras(b);
     if (moved.empty()) break;
     if (views.size() - moved.size() < 2)
-      throw Error(ErrorCode::could_not_solve, "photograph",
-                  "The strips of the board do not lie alike in the photographs: fix them with tape, keep them flat, and take the photographs again.");
+      throw Error(
+          ErrorCode::could_not_solve, "photograph",
+          "The strips of the board do not lie alike in the photographs: fix them with tape, keep them flat, and take the photographs again.");
     for (auto camera = moved.rbegin(); camera != moved.rend(); ++camera) {
       notes.push_back(photographs[index(views[index(*camera)].photograph)].file_name +
                       " was left out, because the board does not lie in it as in the others, or was misread.");

@@ -37,7 +37,7 @@ inline PhotographOptions options_of(const Scene& scene) {
 struct TruthError {
   std::size_t points = 0;
   double median_mm = 0, percentile_95_mm = 0, max_mm = 0;
-  double chi_square = 0;     // mean of squared errors over sigma, per direction; 1 is honest
+  double chi_square = 0;      // mean of squared errors over sigma, per direction; 1 is honest
   double within_2_sigma = 0;  // share of the points within 2 sigma sqrt(3) of the truth
 };
 

@@ -106,8 +106,8 @@ class Renderer {
     const double diffuse = 0.35 + 0.65 * std::max(0.0, n.dot(lamp));
     double value = sheet_.light(scene_.bump.sheet_mm(p.head<2>())) * diffuse * evenness(p.head<2>());
     if (scene_.gloss > 0) {
-      const Vec3 half_way = (lamp - d.normalized()).normalized();
-      value += scene_.gloss * 6 * std::pow(std::max(0.0, n.dot(half_way)), 400);
+      const Vec3 bisector = (lamp - d.normalized()).normalized();
+      value += scene_.gloss * 6 * std::pow(std::max(0.0, n.dot(bisector)), 400);
     }
     return value;
   }
@@ -118,8 +118,8 @@ class Renderer {
       const BoardStrip& strip = scene_.sheet.strips[k];
       const Vec2 q = b - strip.origin_mm - scene_.strip_shift_mm[k];
       const double a = -(scene_.strip_turn_rad[k] + 0.5 * std::numbers::pi * strip.quarter_turns);
-      const Vec2 own =
-          Vec2(std::cos(a) * q.x() - std::sin(a) * q.y(), std::sin(a) * q.x() + std::cos(a) * q.y()) / scene_.board_scale;
+      const Vec2 own = Vec2(std::cos(a) * q.x() - std::sin(a) * q.y(), std::sin(a) * q.x() + std::cos(a) * q.y()) /
+                       scene_.board_scale;
       if ((own - strip.lower_mm).minCoeff() < 0 || (strip.upper_mm - own).minCoeff() < 0) continue;
       return strips_[k].light(own);
     }
@@ -151,20 +151,22 @@ void blur(std::vector<float>& light, int width, int height, double sigma) {
         for (int x = 0; x < width; ++x) {
           double value = 0;
           for (int i = -reach; i <= reach; ++i) {
-            const int u = across ? std::clamp(x + i, 0, width - 1) : x, v = across ? y : std::clamp(y + i, 0, height - 1);
-            value += weight[static_cast<std::size_t>(i + reach)] *
-                     static_cast<double>(light[static_cast<std::size_t>(v) * static_cast<std::size_t>(width) + static_cast<std::size_t>(u)]);
+            const int u = across ? std::clamp(x + i, 0, width - 1) : x,
+                      v = across ? y : std::clamp(y + i, 0, height - 1);
+            value +=
+                weight[static_cast<std::size_t>(i + reach)] *
+                static_cast<double>(
+                    light[static_cast<std::size_t>(v) * static_cast<std::size_t>(width) + static_cast<std::size_t>(u)]);
           }
-          other[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)] = static_cast<float>(value / sum);
+          other[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)] =
+              static_cast<float>(value / sum);
         }
     });
     light.swap(other);
   }
 }
 
-double srgb_of(double light) {
-  return light <= 0.0031308 ? 12.92 * light : 1.055 * std::pow(light, 1 / 2.4) - 0.055;
-}
+double srgb_of(double light) { return light <= 0.0031308 ? 12.92 * light : 1.055 * std::pow(light, 1 / 2.4) - 0.055; }
 
 }  // namespace
 
@@ -201,7 +203,8 @@ std::vector<View> ring_of_views(int count, double distance_mm, double elevation_
     const double around = 2 * std::numbers::pi * (i + 0.15) / count;
     const double up = (elevation_deg + (i % 2 == 0 ? 0 : 14)) * std::numbers::pi / 180;
     views.push_back({distance_mm * Vec3(std::cos(around) * std::cos(up), std::sin(around) * std::cos(up), std::sin(up)),
-                     Vec3(4 * std::cos(3 * around), 3 * std::sin(2 * around), 8), 0.15 * std::sin(5 * around) + (i % 3 == 2 ? 1.5 : 0)});
+                     Vec3(4 * std::cos(3 * around), 3 * std::sin(2 * around), 8),
+                     0.15 * std::sin(5 * around) + (i % 3 == 2 ? 1.5 : 0)});
   }
   return views;
 }
@@ -229,7 +232,8 @@ Bytes photograph(const Scene& scene, const Phone& phone, const View& view, std::
               const Vec2 moved = exposures > 1 ? Vec2((e / (exposures - 1.0) - 0.5) * phone.motion_px) : Vec2(0, 0);
               sum += renderer.light(Vec2(x + (u + 0.5) / n, static_cast<double>(y) + (v + 0.5) / n) + moved);
             }
-        light[y * static_cast<std::size_t>(w) + static_cast<std::size_t>(x)] = static_cast<float>(sum / (n * n * exposures));
+        light[y * static_cast<std::size_t>(w) + static_cast<std::size_t>(x)] =
+            static_cast<float>(sum / (n * n * exposures));
       }
   });
   blur(light, w, h, phone.defocus_px);
@@ -239,8 +243,8 @@ Bytes photograph(const Scene& scene, const Phone& phone, const View& view, std::
     for (int x = 0; x < w; ++x) {
       const double level = 255 * srgb_of(std::clamp(static_cast<double>(light[image.index(x, y)]), 0.0, 1.0));
       for (std::size_t k = 0; k < 3; ++k)
-        image.at(phone.mirrored ? w - 1 - x : x, y)[k] = static_cast<std::uint8_t>(
-            std::clamp(level + phone.noise_levels * random.normal() + 0.5, 0.0, 255.0));
+        image.at(phone.mirrored ? w - 1 - x : x, y)[k] =
+            static_cast<std::uint8_t>(std::clamp(level + phone.noise_levels * random.normal() + 0.5, 0.0, 255.0));
     }
   if (phone.jpeg_quality == 0) return write_png(image, 0, Context());
   Bytes bytes;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Virtual photographs of a formed sheet with coded marks: a bump known by formula, strips on the frame, a phone's lens and
-// its faults. It shares nothing with the code under test but the list of printed marks.
+// Virtual photographs of a formed sheet with coded marks: a bump known by formula, strips on the frame, a phone's lens
+// and its faults. It shares nothing with the code under test but the list of printed marks.
 #include <array>
 #include <string>
 #include <vector>
@@ -37,14 +37,14 @@ struct Scene {
 
 struct Phone {
   int width = 1600, height = 1200;
-  double focal = 0.8;               // of the longer side
-  Vec2 centre_off_px{0, 0};         // principal point from the middle
+  double focal = 0.8;        // of the longer side
+  Vec2 centre_off_px{0, 0};  // principal point from the middle
   double k1 = 0.08, k2 = -0.12;
-  double defocus_px = 0.7;          // standard deviation of the blur
-  Vec2 motion_px{0, 0};             // way of the picture during the exposure
-  double noise_levels = 2;          // of 255, at white
-  int samples = 2;                  // per pixel and direction
-  int jpeg_quality = 92;            // 0: PNG
+  double defocus_px = 0.7;  // standard deviation of the blur
+  Vec2 motion_px{0, 0};     // way of the picture during the exposure
+  double noise_levels = 2;  // of 255, at white
+  int samples = 2;          // per pixel and direction
+  int jpeg_quality = 92;    // 0: PNG
   bool mirrored = false;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "evidence/photographs/light_picture.h"
+#include "imaging/picture/light_picture.h"
 
 #include <algorithm>
 #include <cmath>

@@ -151,6 +151,7 @@ PhotographMeasurement measure_photographs(std::span<const Photograph> photograph
   for (std::size_t i = 0; i < m.sights.size(); ++i)
     if (m.photographs_of[i] == 1) m.sights[i] = MarkSight::seen_once;
     else if (m.photographs_of[i] > 1) m.sights[i] = MarkSight::uncertain;
+  for (const int mark : solution.narrow_marks) m.sights[index(mark)] = MarkSight::small_angle;
   add_points_of(m, solution, sheet, options);
   if (m.points.empty())
     throw Error(ErrorCode::could_not_solve, "photograph",

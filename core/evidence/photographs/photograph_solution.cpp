@@ -19,6 +19,7 @@ constexpr int min_strips_seen = 2;
 constexpr std::array<double, 4> usual_focal_lengths{0.75, 0.55, 1.1, 2.0};  // of the picture's longer side
 constexpr int start_iterations = 15, iterations = 60;
 constexpr double outlier_distance = 4.5;   // usual distances
+constexpr double min_start_angle_rad = 0.01;  // between two rays of a point
 constexpr double worst_start_px = 0.01;    // of the longer side: what a point may be off before the adjustment
 constexpr double worst_camera_px = 0.004;  // of the longer side: RMS of a photograph in which the board has moved
 
@@ -283,6 +284,14 @@ void add_sheet_points(PhotographSolution& solution, const std::vector<ReadPhotog
     for (BundleObservation& o : of_corner[corner]) seen.push_back(&o);
     const auto point = start_point(b, seen);
     if (!point) continue;
+    // Photographs from one place say nothing about distance, and would make the equations singular.
+    std::vector<const BundleObservation*> kept;
+    for (const BundleObservation& o : of_corner[corner])
+      if (o.used) kept.push_back(&o);
+    if (widest_angle_rad(rays_of(b, kept)) < min_start_angle_rad) {
+      solution.narrow_marks.insert(static_cast<int>(corner / 4));
+      continue;
+    }
     solution.point_of_corner[corner] = static_cast<int>(b.points.size());
     for (BundleObservation& o : of_corner[corner]) {
       o.point = static_cast<int>(b.points.size());

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 // From marks found in photographs to cameras, lens and points.
+#include <set>
+
 #include "evidence/photographs/bundle.h"
 #include "evidence/photographs/photograph_reading.h"
 
@@ -12,6 +14,7 @@ struct PhotographSolution {
   BundleFit fit;
   std::vector<int> photograph_of_camera;
   std::vector<int> point_of_corner;  // 4 per mark of the sheet: index into bundle.points, -1 where there is none
+  std::set<int> narrow_marks;        // of the sheet, seen from one place only
   std::vector<double> angle_rad;     // per point: the largest between two of its rays
   std::vector<double> camera_rms_px;
   int outliers = 0;

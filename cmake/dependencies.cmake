@@ -52,7 +52,7 @@ formwright_dependency(pugixml pugixml.hpp pugixml)
 # JPEG and other pictures. A compiled library, so nobody defines an *_IMPLEMENTATION macro.
 formwright_dependency(stb stb_image.h stb SUBDIR stb)
 
-# Smaller and blurred pictures: parts of two modules of OpenCV, compiled from one source for both (setup/opencv.sh).
+# Smaller and blurred pictures, outlines of marks: parts of two modules of OpenCV, compiled from one source for both (setup/opencv.sh).
 if(NOT EMSCRIPTEN)
   execute_process(
     COMMAND ${CMAKE_CURRENT_LIST_DIR}/../setup/opencv.sh --print-path

@@ -3,7 +3,7 @@
 // recorded.
 //   node parity.mjs NATIVE_PROGRAM FORMWRIGHT_MJS [NAME] [--record]   all jobs, or NAME.json
 // A recorded job is {"job", "given", "tolerance", "recorded"}: `given` names inputs that are outputs of other jobs ({"job", "given", "output"}, made
-// natively) or JSON files ({"json", "file_name"}), `tolerance` relative, per figure of the report ("*" for the
+// natively) or JSON files ({"json", "file_name"}) or files of this folder ({"file"}), `tolerance` relative, per figure of the report ("*" for the
 // rest; figures that measure time or memory are left out), `recorded` what the report said when it was recorded.
 import { spawn } from 'node:child_process';
 import { createHash } from 'node:crypto';
@@ -181,10 +181,14 @@ async function withGiven({ job, given = {} }) {
     return (await runNatively(made.job, made.files)).bytes[output];
   };
   for (const [name, input] of Object.entries(given)) {
-    const bytes = input.json ? Buffer.from(JSON.stringify(input.json)) : await make(input);
+    const bytes = input.json
+      ? Buffer.from(JSON.stringify(input.json))
+      : input.file
+        ? readFileSync(path.join(folder, input.file))
+        : await make(input);
     const sha256 = createHash('sha256').update(bytes).digest('hex');
     files[sha256] = bytes;
-    inputs[name] = { sha256, file_name: input.output ?? input.file_name };
+    inputs[name] = { sha256, file_name: input.output ?? input.file_name ?? input.file };
   }
   return { job: { ...job, inputs }, files };
 }

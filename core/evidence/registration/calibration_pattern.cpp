@@ -152,6 +152,9 @@ CalibrationPattern read_calibration_pattern(ByteView bytes) {
   const Json json = parse_json_text(as_text(bytes));
   if (!json.is_object() || !json.contains("format"))
     refuse("pattern", "This is not a pattern.json: give the one that evidence-pattern wrote beside the print.");
+  if (json["format"] == "formwright mark sheet 1")
+    refuse("pattern",
+           "This pattern.json describes coded marks, which are measured by photographs: use evidence-photographs.");
   if (json["format"] != format_name)
     refuse("pattern",
            "This pattern.json is of another version: make it again with evidence-pattern and the same values.");

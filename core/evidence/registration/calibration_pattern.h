@@ -22,22 +22,25 @@ struct CalibrationPatternOptions {
   double margin_mm = 3;
 
   static constexpr auto parameters = std::tuple{
-      parameter("seed", &CalibrationPatternOptions::seed, "Seed", unit::none, 0, 2147483647,
-                "Number that selects the random noise of the pattern. The same number gives the same pattern again.")
+      parameter(
+          "seed", &CalibrationPatternOptions::seed, "Seed", unit::none, 0, 2147483647,
+          "Number that selects the random noise, or which numbers the coded marks have. The same number gives the same pattern again.")
           .group("Pattern")
           .slider(1, 100),
       parameter(
           "finest_mm", &CalibrationPatternOptions::finest_mm, "Finest noise", unit::mm, 0.2, 20,
           "Spacing of the finest noise in the pattern. It must survive printing, heat and the camera: 1.2 mm is usual.")
           .group("Pattern")
-          .slider(0.5, 4),
+          .slider(0.5, 4)
+          .only_with("kind", "noise"),
       parameter(
           "coarsest_mm", &CalibrationPatternOptions::coarsest_mm, "Coarsest noise", unit::mm, 1, 500,
           "Spacing of the coarsest noise in the pattern. Each level between it and the finest is twice as coarse as the one before.")
           .group("Pattern")
-          .slider(10, 80),
+          .slider(10, 80)
+          .only_with("kind", "noise"),
       parameter("margin_mm", &CalibrationPatternOptions::margin_mm, "Margin", unit::mm, 0, 100,
-                "Distance from the edge of the clamp opening inwards to the corner marks and colour patches.")
+                "Distance from the edge of the clamp opening inwards to the outermost marks.")
           .group("Pattern")
           .slider(0, 15),
       parameter("sheet_x_mm", &CalibrationPatternOptions::sheet_x_mm, "Sheet width", unit::mm, 60, 3000,

@@ -16,7 +16,7 @@
 
 namespace formwright {
 
-std::vector<Operation> all_operations(Operation evidence_register) {
+std::vector<Operation> all_operations(Operation evidence_register, Operation evidence_photographs) {
   std::vector<Operation> all = {relief_operation(),
                                 relief_light_operation(),
                                 relief_forest_operation(),
@@ -26,6 +26,7 @@ std::vector<Operation> all_operations(Operation evidence_register) {
                                 thermoform_compare_operation(),
                                 evidence_pattern_operation(),
                                 std::move(evidence_register),
+                                std::move(evidence_photographs),
                                 evidence_calibrate_operation(),
                                 evidence_diagnose_operation(),
                                 evidence_diagnose_relief_operation(),

@@ -7,7 +7,8 @@
 
 namespace formwright {
 
-/// Every operation, in the order in which it is listed; evidence-register with or without its code.
-std::vector<Operation> all_operations(Operation evidence_register);
+/// Every operation, in the order in which it is listed; those that read photographs with or without their
+/// code.
+std::vector<Operation> all_operations(Operation evidence_register, Operation evidence_photographs);
 
 }  // namespace formwright

@@ -7,7 +7,8 @@
 namespace formwright {
 
 const std::vector<Operation>& operations() {
-  static const std::vector<Operation> list = all_operations(evidence_register_declaration());
+  static const std::vector<Operation> list =
+      all_operations(evidence_register_declaration(), evidence_photographs_declaration());
   return list;
 }
 

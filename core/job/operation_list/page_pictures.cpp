@@ -6,7 +6,7 @@
 namespace formwright {
 
 const std::vector<Operation>& operations() {
-  static const std::vector<Operation> list = {evidence_register_operation()};
+  static const std::vector<Operation> list = {evidence_register_operation(), evidence_photographs_operation()};
   return list;
 }
 

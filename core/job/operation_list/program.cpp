@@ -7,7 +7,8 @@
 namespace formwright {
 
 const std::vector<Operation>& operations() {
-  static const std::vector<Operation> list = all_operations(evidence_register_operation());
+  static const std::vector<Operation> list =
+      all_operations(evidence_register_operation(), evidence_photographs_operation());
   return list;
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/sha256.h"
+#include "evidence/photographs/mark_sheet.h"
 #include "evidence/registration/calibration_pattern.h"
 #include "imaging/picture/png_writer.h"
 #include "job/contract/operation_options.h"
@@ -10,7 +11,21 @@
 namespace formwright {
 namespace {
 
+enum class PatternKind { noise, marks };
+
+}  // namespace
+
+template <>
+struct EnumNames<PatternKind> {
+  static constexpr std::array<std::string_view, 2> names{"noise", "marks"};
+  static constexpr std::array<std::string_view, 2> labels{"Noise, for a 3D scan", "Coded marks, for photographs"};
+};
+
+namespace {
+
 struct EvidencePatternOptions : CalibrationPatternOptions {
+  PatternKind kind = PatternKind::noise;
+  double mark_mm = 9, mark_pitch_mm = 15, board_mark_mm = 16;
   double dots_per_inch = 300;
   bool mirror = false;
   Paper paper = Paper::sheet;
@@ -20,6 +35,28 @@ struct EvidencePatternOptions : CalibrationPatternOptions {
   static constexpr auto parameters = std::tuple_cat(
       inherit_parameters<EvidencePatternOptions>(CalibrationPatternOptions::parameters),
       std::tuple{
+          parameter(
+              "kind", &EvidencePatternOptions::kind, "Kind",
+              "What is printed on the sheet. Noise shows every point to a 3D scan. Coded marks are found in photographs; board.pdf has the paper strips that lie around them.")
+              .group("Pattern"),
+          parameter(
+              "mark_mm", &EvidencePatternOptions::mark_mm, "Size of the marks", unit::mm, 2, 100,
+              "Side of the coded marks on the sheet. They must be at least 30 pixels wide in the photographs: 8 to 10 mm is usual.")
+              .group("Pattern")
+              .slider(5, 20)
+              .only_with("kind", "marks"),
+          parameter(
+              "mark_pitch_mm", &EvidencePatternOptions::mark_pitch_mm, "Spacing of the marks", unit::mm, 3, 200,
+              "Distance between the middles of neighbouring marks. Smaller gives more points; at least 1.25 times the size of the marks.")
+              .group("Pattern")
+              .slider(8, 40)
+              .only_with("kind", "marks"),
+          parameter(
+              "board_mark_mm", &EvidencePatternOptions::board_mark_mm, "Size of the board's marks", unit::mm, 4, 100,
+              "Side of the coded marks on the paper strips. The strips are 1.5 times as wide: choose it to fit the bars of the clamp frame.")
+              .group("Pattern")
+              .slider(8, 30)
+              .only_with("kind", "marks"),
           parameter(
               "dots_per_inch", &EvidencePatternOptions::dots_per_inch, "Resolution", unit::dots_per_inch, 36, 1200,
               "Dots per inch of the printed pattern. 300 is as fine as transfer paper can hold; more makes larger files.")
@@ -45,12 +82,15 @@ struct EvidencePatternOptions : CalibrationPatternOptions {
 };
 
 std::vector<OutputInfo> evidence_pattern_outputs() {
-  return {{"pattern.png", "image/png", "Pattern", "The pattern for the whole sheet. The file contains its true size.",
-           true},
-          {"pattern.pdf", "application/pdf", "Pages", "The pattern at true size on the chosen paper. Print at 100 %.",
-           true},
-          {"pattern.json", "application/json", "Description",
-           "The description of the pattern that evidence-register needs later. Keep it.", true}};
+  return {
+      {"pattern.png", "image/png", "Pattern", "The pattern for the whole sheet. The file contains its true size.",
+       true},
+      {"pattern.pdf", "application/pdf", "Pages", "The pattern at true size on the chosen paper. Print at 100 %.",
+       true},
+      {"board.pdf", "application/pdf", "Board",
+       "The strips that lie on the clamp frame in the photographs, at true size on A4. Only with coded marks.", true},
+      {"pattern.json", "application/json", "Description",
+       "The description of the pattern that evidence-register or evidence-photographs needs later. Keep it.", true}};
 }
 
 std::vector<ReportField> evidence_pattern_report_fields() {
@@ -61,6 +101,10 @@ std::vector<ReportField> evidence_pattern_report_fields() {
        "Resolution as stored in the picture file, which holds whole pixels per metre."},
       {"noise_scales_mm", "Noise levels", "mm", "Spacings of the noise levels in the pattern, from fine to coarse."},
       {"patches", "Colour patches", "", "Number of colour patches inside the clamp opening."},
+      {"coded_marks", "Coded marks", "", "Number of coded marks on the sheet."},
+      {"board_marks", "Marks of the board", "", "Number of coded marks on the four strips."},
+      {"board_check_mm", "Check length", "mm",
+       "Length between the outer edges of the front strip's marks, to be measured on the printed board."},
       {"marks_mm", "Corner marks", "mm",
        "Centres of the corner marks on the sheet, in the order front left, front right, back right, back left."},
       {"pixels_sha256", "Fingerprint", "",
@@ -87,24 +131,62 @@ ThermoformPrintOptions print_options(const EvidencePatternOptions& options) {
   return print;
 }
 
+MarkSheetPlan mark_sheet_plan(const EvidencePatternOptions& options) {
+  return {{options.sheet_x_mm, options.sheet_y_mm},
+          {options.clamp_opening_x_mm, options.clamp_opening_y_mm},
+          options.seed,
+          options.margin_mm,
+          options.mark_mm,
+          options.mark_pitch_mm,
+          options.board_mark_mm};
+}
+
+/// What is printed, described and reported of either kind.
+struct DrawnPattern {
+  Image picture;
+  Json description;
+  std::optional<MarkSheet> marks;
+};
+
+DrawnPattern draw_noise(const EvidencePatternOptions& options, const PrintGrid& grid, Json& report, Context& context) {
+  const CalibrationPattern pattern = make_calibration_pattern(options);
+  report["noise_scales_mm"] = pattern.scales_mm;
+  report["patches"] = pattern.patches.size();
+  report["marks_mm"] = Json::array();
+  for (const CornerMark& mark : pattern.marks) report["marks_mm"].push_back({mark.centre_mm.x(), mark.centre_mm.y()});
+  return {draw_calibration_pattern(pattern, grid.width, grid.height, grid.pixel_mm(), context),
+          calibration_pattern_json(pattern), std::nullopt};
+}
+
+DrawnPattern draw_coded_marks(const EvidencePatternOptions& options, const PrintGrid& grid, Json& report) {
+  DrawnPattern drawn{
+      Image(grid.width, grid.height, {255, 255, 255, 255}), {}, make_mark_sheet(mark_sheet_plan(options))};
+  const MarkSheet& sheet = *drawn.marks;
+  std::size_t board_marks = 0;
+  for (const BoardStrip& strip : sheet.strips) board_marks += strip.marks.size();
+  report["coded_marks"] = sheet.marks.size();
+  report["board_marks"] = board_marks;
+  report["board_check_mm"] = sheet.check_mm;
+  draw_marks(drawn.picture, grid.pixel_mm(), Vec2(0, 0), sheet.marks);
+  drawn.description = mark_sheet_json(sheet);
+  return drawn;
+}
+
 OperationResult run_pattern(const OperationCall& call, const EvidencePatternOptions& options) {
   Context& context = call.context;
-  const CalibrationPattern pattern = make_calibration_pattern(options);
   const ThermoformPrintOptions print = print_options(options);
   const PrintGrid grid = print_grid(print);
   const PageLayout layout = page_layout(print);
   Stopwatch watch;
   context.progress(0, "Drawing the pattern");
-  const Image picture = draw_calibration_pattern(pattern, grid.width, grid.height, grid.pixel_mm(), context);
   OperationResult result;
   Json& report = result.report;
+  const DrawnPattern drawn = options.kind == PatternKind::noise ? draw_noise(options, grid, report, context)
+                                                                : draw_coded_marks(options, grid, report);
+  const Image& picture = drawn.picture;
   report["sheet_mm"] = {options.sheet_x_mm, options.sheet_y_mm};
   report["picture_pixels"] = {grid.width, grid.height};
   report["dots_per_inch"] = 25.4 / grid.pixel_mm();
-  report["noise_scales_mm"] = pattern.scales_mm;
-  report["patches"] = pattern.patches.size();
-  report["marks_mm"] = Json::array();
-  for (const CornerMark& mark : pattern.marks) report["marks_mm"].push_back({mark.centre_mm.x(), mark.centre_mm.y()});
   report["pixels_sha256"] = sha256_hex(
       ByteView(reinterpret_cast<const std::byte*>(picture.pixels.data()), sizeof(Rgba) * picture.pixels.size()));
   report["pages"] = layout.tiles.size();
@@ -118,7 +200,8 @@ OperationResult run_pattern(const OperationCall& call, const EvidencePatternOpti
   };
   add("pattern.png", [&] { return write_png(with_marks(picture, grid, print), grid.per_metre, context); });
   add("pattern.pdf", [&] { return write_print_pdf(picture, grid, layout, print, "Calibration pattern", context); });
-  add("pattern.json", [&] { return to_bytes(calibration_pattern_json(pattern).dump(1) + "\n"); });
+  if (drawn.marks) add("board.pdf", [&] { return write_board_pdf(*drawn.marks, options.dots_per_inch, context); });
+  add("pattern.json", [&] { return to_bytes(drawn.description.dump(1) + "\n"); });
   report["seconds_write"] = watch.seconds();
   report["peak_memory_mb"] = context.peak_memory_mb();
   return result;
@@ -131,11 +214,13 @@ Operation evidence_pattern_operation() {
   operation.name = "evidence-pattern";
   operation.title = "Calibration pattern";
   operation.summary =
-      "Makes a pattern to print on a sheet. A scan of the formed sheet then shows where every point of the sheet moved.";
+      "Makes a pattern to print on a sheet. A scan or photographs of the formed sheet then show where its points moved.";
   operation.outputs = evidence_pattern_outputs();
   operation.report = evidence_pattern_report_fields();
-  take_options<EvidencePatternOptions>(
-      operation, run_pattern, [](const EvidencePatternOptions& options) { make_calibration_pattern(options); });
+  take_options<EvidencePatternOptions>(operation, run_pattern, [](const EvidencePatternOptions& options) {
+    if (options.kind == PatternKind::noise) make_calibration_pattern(options);
+    else make_mark_sheet(mark_sheet_plan(options));
+  });
   return operation;
 }
 

@@ -11,6 +11,7 @@ const calibrating = 'evidence-calibrate';
 export const comparing = 'thermoform-compare';
 export const inventing = 'evidence-virtual-object';
 export const registering = 'evidence-register';
+export const photographing = 'evidence-photographs';
 export const planning = 'evidence-plan-points';
 
 export type Mode = 'diagnose' | 'calibrate';
@@ -38,8 +39,10 @@ interface Draft {
   readonly files: Readonly<Partial<Record<ObjectFile, BlobReference>>>;
 }
 
-/** A photographed scan on its way to measured points. */
+/** A scan of a printed sheet, or photographs of it, on the way to measured points. */
 export interface Scan {
+  /** What measures it; missing in projects kept before photographs were: a scan. */
+  readonly operation?: typeof registering | typeof photographing;
   readonly files: readonly {
     readonly input: string;
     readonly file_name: string;
@@ -60,7 +63,7 @@ export interface MeasuredScan {
   readonly of: Json;
   readonly report: Report;
   readonly points: BlobReference;
-  /** The scan mapped back to the flat sheet: it should look like the pattern. */
+  /** The scan mapped back to the flat sheet; of photographs the marks that were seen. */
   readonly aligned: BlobReference;
 }
 

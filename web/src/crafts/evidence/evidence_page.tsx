@@ -109,8 +109,9 @@ function Empty({ session, onChooseFile }: EvidencePageProps) {
             </li>
             <li>
               <strong>Measured points of the formed sheet.</strong> A table named measured.csv. A photographed
-              scan of a printed sheet with its pattern.json does as well: its points are measured first.
-              Without a scanner, ten marks measured with calipers will do.
+              scan of a printed sheet with its pattern.json does as well: its points are measured first. So do
+              several photographs of a sheet printed with coded marks. Ten marks measured with calipers will
+              do, too.
             </li>
           </ul>
           <p class="aside">Drop the three files together, their folder, or a zip of it.</p>

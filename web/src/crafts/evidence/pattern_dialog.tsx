@@ -59,10 +59,16 @@ function PatternDialog({ session, operation, onClose }: PatternDialogProps) {
         operation: patterning,
         parameters: parameters.value,
         inputs: {},
-        outputs: ['pattern.png', 'pattern.json'],
+        outputs: [
+          'pattern.png',
+          'pattern.json',
+          ...(parameters.value['kind'] === 'marks' ? ['board.pdf'] : []),
+        ],
       };
       const made = await backend.run(job, { signal: abort.signal });
       download(await bytesOf(made, 'pattern.json'), 'pattern.json', 'application/json');
+      if (job.outputs.includes('board.pdf'))
+        download(await bytesOf(made, 'board.pdf'), 'board.pdf', 'application/pdf');
       const bytes = await bytesOf(made, 'pattern.png');
       onClose();
       printOnPaper({ title: 'the pattern', fileName: 'pattern.png', bytes });
@@ -78,8 +84,9 @@ function PatternDialog({ session, operation, onClose }: PatternDialogProps) {
   return (
     <Dialog title="Print a pattern" onClose={onClose}>
       <p>
-        Print this pattern on a sheet, form it and scan it: the scan then shows where every point of the sheet
-        moved. Keep pattern.json, which is saved with it and is needed to read the scan.
+        Print this pattern on a sheet and form it. A scan of it, or photographs if its kind is coded marks,
+        then show where the points of the sheet moved. Keep pattern.json, which is saved with it and is needed
+        then. With coded marks, board.pdf is saved too: the strips that lie around the sheet.
       </p>
       <div class="virtual-parameters">
         <ParameterPanel

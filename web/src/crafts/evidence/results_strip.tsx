@@ -9,7 +9,7 @@ import { diagnosing, evidence, usesIn } from './evidence_document';
 import type { EvidenceSession } from './evidence_session';
 import { measuredMarks } from './by_hand/hand_marks';
 import { openingOf, planNow } from './by_hand/plan_marks';
-import { measuredNow } from './scan/measure_scan';
+import { measuredNow, isOfPhotographs, wordOf } from './scan/measure_scan';
 import { distancesOf, meanOf } from './pictures/residuals';
 
 export function ResultsStrip({ session }: { session: EvidenceSession }) {
@@ -74,10 +74,14 @@ function stateOf(session: EvidenceSession) {
     return measured
       ? {
           state: 'done' as const,
-          title: 'Scan measured',
+          title: isOfPhotographs(scan) ? 'Photographs measured' : 'Scan measured',
           detail: `${formatCount(figure(measured.report, 'points') ?? 0)} points`,
         }
-      : { state: 'idle' as const, title: 'Scan opened', detail: 'Press Measure the scan to find its points' };
+      : {
+          state: 'idle' as const,
+          title: isOfPhotographs(scan) ? 'Photographs opened' : 'Scan opened',
+          detail: `Press Measure the ${wordOf(scan)} to find the points`,
+        };
   }
   const result = session.result.value;
   if (result) {

@@ -8,10 +8,10 @@ import { nameProject } from '../../../shared/session/craft_document';
 import type { Change } from '../../../shared/session/room_session';
 import type { Services } from '../../../shared/session/services';
 import type { EvidenceDocument, MeasuredObject, ObjectFile, Scan } from '../evidence_document';
-import { evidence, freeName, objectFiles, registering } from '../evidence_document';
+import { evidence, freeName, objectFiles, photographing, registering } from '../evidence_document';
 import type { Bytes, Found } from './measured_files';
 import { countReadings, missingFrom, packObject, plainName } from './measured_files';
-import { scanInputs } from '../scan/scan_files';
+import { arePhotographs, photographInputs, scanInputs } from '../scan/scan_files';
 
 /** The part of the room that files are taken into. */
 interface ObjectShelf {
@@ -79,10 +79,22 @@ export async function takeScan(
   dropped: readonly File[],
   change: Change,
 ): Promise<void> {
-  const operation = session.operationNamed(registering);
-  const kept = session.document.value.scan?.files ?? [];
+  const before = session.document.value.scan;
+  const had = (wanted: RegExp) => before?.files.filter(({ input }) => wanted.test(input)) ?? [];
+  const photographs = arePhotographs(dropped, {
+    photographs: before?.operation === photographing,
+    scan: had(/^scan$/).length > 0,
+  });
+  const operation = photographs ? photographing : registering;
+  // What lay there for the other way of measuring is of no use to this one, its pattern apart.
+  const kept = (before?.files ?? []).filter(
+    ({ input }) => operation === (before?.operation ?? registering) || input === 'pattern',
+  );
+  const inputs = photographs
+    ? photographInputs(dropped, kept.filter(({ input }) => input !== 'pattern').length)
+    : scanInputs(dropped, session.operationNamed(registering));
   const added = await Promise.all(
-    scanInputs(dropped, operation).map(async ({ input, file }) => ({
+    inputs.map(async ({ input, file }) => ({
       input,
       file_name: file.name,
       file: await session.keep(
@@ -93,7 +105,7 @@ export async function takeScan(
   );
   const others = kept.filter((old) => !added.some(({ input }) => input === old.input));
   const files = [...others, ...added];
-  const parameters = session.document.value.scan?.parameters ?? {};
-  const scan: Scan = { files, corners: null, parameters, measured: null };
-  change(evidence.setScan(scan, 'Open a scan'));
+  const parameters = operation === (before?.operation ?? registering) ? (before?.parameters ?? {}) : {};
+  const scan: Scan = { operation, files, corners: null, parameters, measured: null };
+  change(evidence.setScan(scan, photographs ? 'Open photographs' : 'Open a scan'));
 }

@@ -4,7 +4,7 @@ import type { Scan } from '../evidence_document';
 import { evidence } from '../evidence_document';
 import { newDocument } from '../../../project/document';
 import { cornersText, cornersToMove, firstCorners, measuredNow, moved, seenCorners } from './measure_scan';
-import { scanInputs } from './scan_files';
+import { arePhotographs, photographInputs, scanInputs } from './scan_files';
 
 const blob = (digit: string) => ({ blob: digit.repeat(64), bytes: 1, media_type: 'x' });
 
@@ -67,5 +67,30 @@ describe('a scan on its way to points', () => {
       ['texture', 'a.png'],
     ]);
     expect(scanInputs(files, undefined)).toEqual([]);
+  });
+});
+
+describe('photographs on their way to points', () => {
+  const files = ['pattern.json', 'a.jpg', 'b.JPG', 'c.png', 'd.txt'].map((name) => new File([''], name));
+
+  it('are numbered after those that are there', () => {
+    const names = (before: number) =>
+      photographInputs(files, before).map(({ input, file }) => [input, file.name]);
+    expect(names(0)).toEqual([
+      ['photograph', 'a.jpg'],
+      ['photograph_2', 'b.JPG'],
+      ['photograph_3', 'c.png'],
+      ['pattern', 'pattern.json'],
+    ]);
+    expect(names(2)[0]).toEqual(['photograph_3', 'a.jpg']);
+  });
+
+  it('are told from the picture of a scan', () => {
+    const none = { photographs: false, scan: false };
+    expect(arePhotographs(files, none)).toBe(true);
+    expect(arePhotographs([{ name: 'a.obj' }, ...files], none)).toBe(false);
+    expect(arePhotographs([{ name: 'a.jpg' }], none)).toBe(false);
+    expect(arePhotographs([{ name: 'a.jpg' }], { photographs: true, scan: false })).toBe(true);
+    expect(arePhotographs(files, { photographs: false, scan: true })).toBe(false);
   });
 });

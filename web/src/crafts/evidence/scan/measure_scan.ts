@@ -6,9 +6,16 @@ import { jsonEqual } from '../../../project/document';
 import { bytesOf } from '../../../shared/session/import_model';
 import { readyWorker } from '../../../shared/session/services';
 import type { MeasuredScan, Place, Scan } from '../evidence_document';
-import { evidence, registering } from '../evidence_document';
+import { evidence, photographing, registering } from '../evidence_document';
 import type { EvidenceSession } from '../evidence_session';
 import { takeObject } from '../objects/take_files';
+
+/** What measures it. */
+export const measuringOf = (scan: Scan): string => scan.operation ?? registering;
+export const isOfPhotographs = (scan: Scan): boolean => scan.operation === photographing;
+
+/** What it is called in buttons and titles. */
+export const wordOf = (scan: Scan): string => (isOfPhotographs(scan) ? 'photographs' : 'scan');
 
 /** In the order that the operation wants them. */
 export const cornerNames = ['front left', 'front right', 'back right', 'back left'] as const;
@@ -67,10 +74,12 @@ export function measuredNow(scan: Scan): MeasuredScan | null {
 
 /** Inputs that the scan still lacks, in the operation's words. */
 export function lacking(session: EvidenceSession, scan: Scan): string[] {
-  const inputs = session.operationNamed(registering)?.inputs ?? [];
-  return inputs
+  const inputs = session.operationNamed(measuringOf(scan))?.inputs ?? [];
+  const missing = inputs
     .filter(({ name, required }) => required && !scan.files.some(({ input }) => input === name))
     .map(({ label }) => label.toLowerCase());
+  const photographs = scan.files.filter(({ input }) => input.startsWith('photograph')).length;
+  return isOfPhotographs(scan) && photographs === 1 ? ['a second photograph', ...missing] : missing;
 }
 
 /** The picture that belongs to the scan: a file of its own, or inside of a GLB. Null where there is none to show. */
@@ -97,21 +106,22 @@ export async function measureScan(session: EvidenceSession, scan: Scan): Promise
       const inputs = Object.fromEntries(
         scan.files.map(({ input, file_name, file }) => [input, { sha256: file.blob, file_name }]),
       );
-      const outputs = ['measured.csv', 'aligned.png'];
+      const picture = isOfPhotographs(scan) ? 'seen.png' : 'aligned.png';
+      const outputs = ['measured.csv', picture];
       const done = await backend.run(
-        { operation: registering, parameters: parametersOf(scan), inputs, outputs },
+        { operation: measuringOf(scan), parameters: parametersOf(scan), inputs, outputs },
         options,
       );
       const measured: MeasuredScan = {
         of: requestOf(scan),
         report: done.report,
         points: await session.keep(await bytesOf(done, 'measured.csv'), 'text/csv'),
-        aligned: await session.keep(await bytesOf(done, 'aligned.png'), 'image/png'),
+        aligned: await session.keep(await bytesOf(done, picture), 'image/png'),
       };
       options.do(evidence.keepMeasuredScan(measured));
     },
     ({ message }) =>
-      (session.problem.value = { kind: 'solve', title: 'Could not measure the scan', message }),
+      (session.problem.value = { kind: 'solve', title: `Could not measure the ${wordOf(scan)}`, message }),
   );
 }
 
@@ -121,7 +131,9 @@ export async function takePoints(
   scan: Scan,
   { points }: MeasuredScan,
 ): Promise<void> {
-  const name = scan.files.find(({ input }) => input === 'scan')?.file_name.replace(/\.[^.]+$/, '') ?? 'Scan';
+  const name =
+    scan.files.find(({ input }) => input === 'scan')?.file_name.replace(/\.[^.]+$/, '') ??
+    (isOfPhotographs(scan) ? 'Photographs' : 'Scan');
   await session.busy(
     'opening',
     name,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which file of a scan goes to which input of the operation that measures it.
+// Which file of a scan, or of photographs, goes to which input of the operation that measures it.
 import type { InputDeclaration, Operation } from '../../../jobs/contract';
 
 export interface InputFile {
@@ -17,4 +17,29 @@ export function scanInputs(files: readonly File[], operation: Operation | undefi
     if (input) found.set(input.name, file);
   }
   return [...found].map(([input, file]) => ({ input, file }));
+}
+
+const isPicture = ({ name }: { readonly name: string }) => /\.(png|jpe?g)$/i.test(name);
+const isMesh = ({ name }: { readonly name: string }) => /\.(obj|glb|ply)$/i.test(name);
+
+/** Pictures without a scan are photographs: several of them, or beside others that came before. */
+export function arePhotographs(
+  dropped: readonly { readonly name: string }[],
+  before: { readonly photographs: boolean; readonly scan: boolean },
+): boolean {
+  if (before.scan || dropped.some(isMesh)) return false;
+  return before.photographs || dropped.filter(isPicture).length >= 2;
+}
+
+/** "photograph", "photograph_2", ... */
+export const photographInput = (index: number): string =>
+  index === 0 ? 'photograph' : `photograph_${index + 1}`;
+
+/** Photographs are added to those that are there, under the next numbers; the last pattern.json stays. */
+export function photographInputs(files: readonly File[], photographsBefore: number): InputFile[] {
+  const photographs = files
+    .filter(isPicture)
+    .map((file, i) => ({ input: photographInput(photographsBefore + i), file }));
+  const pattern = files.filter(({ name }) => /\.json$/i.test(name)).slice(-1);
+  return [...photographs, ...pattern.map((file) => ({ input: 'pattern', file }))];
 }

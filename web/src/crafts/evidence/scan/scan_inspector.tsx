@@ -5,20 +5,29 @@ import { Button, formatBytes } from '../../../ui';
 import { withoutDefaults } from '../../../shared/session/craft_document';
 import { ParameterPanel } from '../../../shared/panels/parameters/parameter_panel';
 import type { Scan } from '../evidence_document';
-import { evidence, registering } from '../evidence_document';
+import { evidence } from '../evidence_document';
 import type { EvidenceSession } from '../evidence_session';
-import { lacking, measuredNow, measureScan, takePoints } from './measure_scan';
+import {
+  isOfPhotographs,
+  lacking,
+  measuredNow,
+  measureScan,
+  measuringOf,
+  takePoints,
+  wordOf,
+} from './measure_scan';
 
-const openGroups = ['Points', 'Scan'];
+const openGroups = ['Points', 'Scan', 'Board'];
 
 export function ScanInspector({ session, scan }: { session: EvidenceSession; scan: Scan }) {
-  const operation = session.operationNamed(registering);
+  const operation = session.operationNamed(measuringOf(scan));
   const { projects } = session.services;
   const measured = measuredNow(scan);
+  const word = wordOf(scan);
   const missing = lacking(session, scan);
   const busy = session.activity.value.kind !== 'idle';
   const reason = busy
-    ? 'The scan is being measured; Esc cancels'
+    ? `The ${word} ${isOfPhotographs(scan) ? 'are' : 'is'} being measured; Esc cancels`
     : missing.length > 0
       ? `Still missing: ${missing.join(' and ')}`
       : undefined;
@@ -31,8 +40,8 @@ export function ScanInspector({ session, scan }: { session: EvidenceSession; sca
   return (
     <>
       <div class="inspector-scroll" tabIndex={-1}>
-        <section class="section" aria-label="From a scan">
-          <h3>From a scan</h3>
+        <section class="section" aria-label={isOfPhotographs(scan) ? 'From photographs' : 'From a scan'}>
+          <h3>{isOfPhotographs(scan) ? 'From photographs' : 'From a scan'}</h3>
           <ul class="scan-files">
             {scan.files.map(({ input, file_name, file }) => (
               <li key={input}>
@@ -41,8 +50,8 @@ export function ScanInspector({ session, scan }: { session: EvidenceSession; sca
               </li>
             ))}
           </ul>
-          <Button size="small" onClick={() => projects.do(evidence.setScan(null, 'Remove the scan'))}>
-            Remove the scan
+          <Button size="small" onClick={() => projects.do(evidence.setScan(null, `Remove the ${word}`))}>
+            Remove the {word}
           </Button>
         </section>
         {operation ? (
@@ -77,12 +86,14 @@ export function ScanInspector({ session, scan }: { session: EvidenceSession; sca
               disabledReason={reason}
               onClick={() => void measureScan(session, scan)}
             >
-              Measure the scan
+              Measure the {word}
             </Button>
             <p>
               {missing.length > 0
-                ? 'Needs the scan and the pattern.json of its print'
-                : 'Takes a few seconds'}
+                ? `Needs the ${word} and the pattern.json of the print`
+                : isOfPhotographs(scan)
+                  ? 'Takes a few seconds for each photograph'
+                  : 'Takes a few seconds'}
             </p>
           </>
         )}

@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A scan on its way to measured points: its picture with the four corner marks, and how it looks on the flat sheet.
-import { useEffect, useState } from 'preact/hooks';
+// A scan or photographs on the way to measured points: its picture with the four corner marks, and how it looks on the flat sheet.
+import { useState } from 'preact/hooks';
 import { Button, formatCount, formatNumber, withUnit } from '../../../ui';
 import { figure, sentences } from '../../../shared/session/report';
 import type { MeasuredScan, Place, Scan } from '../evidence_document';
 import { evidence } from '../evidence_document';
 import type { EvidenceSession } from '../evidence_session';
 import { Pane } from '../pictures/maps';
+import { PhotographsPanel } from './photographs_panel';
+import { usePicture } from './use_picture';
 import {
   cornerNames,
   cornersToMove,
+  isOfPhotographs,
   lacking,
   measuredNow,
   moved,
@@ -26,6 +29,8 @@ export interface ScanPanelProps {
 export function ScanPanel({ session, scan, onChooseFile }: ScanPanelProps) {
   const missing = lacking(session, scan);
   const measured = measuredNow(scan);
+  if (isOfPhotographs(scan))
+    return <PhotographsPanel session={session} scan={scan} onChooseFile={onChooseFile} />;
   return (
     <div class="bench">
       <div class="scan-panes">
@@ -53,29 +58,6 @@ export function ScanPanel({ session, scan, onChooseFile }: ScanPanelProps) {
       </div>
     </div>
   );
-}
-
-/** The address of a picture while it is shown. */
-function usePicture(read: () => Promise<Blob | null>, key: string): string | null {
-  const [url, setUrl] = useState<string | null>(null);
-  useEffect(() => {
-    let made: string | null = null;
-    let gone = false;
-    read().then(
-      (blob) => {
-        if (blob === null || gone) return;
-        made = URL.createObjectURL(blob);
-        setUrl(made);
-      },
-      () => undefined,
-    );
-    return () => {
-      gone = true;
-      setUrl(null);
-      if (made) URL.revokeObjectURL(made);
-    };
-  }, [key]);
-  return url;
 }
 
 function Corners({ session, scan }: { session: EvidenceSession; scan: Scan }) {

@@ -1,7 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A sewn object is measured with a ruler; what was found changes the next plan.
 import type { Page } from '@playwright/test';
-import { backend, chooseSample, expect, expectAccessible, goToRoom, makeRibbon, openPage, test } from './page';
+import {
+  backend,
+  chooseSample,
+  expect,
+  expectAccessible,
+  goToRoom,
+  makeRibbon,
+  openPage,
+  test,
+} from './page';
 
 test.skip(backend === 'mock', 'the mock makes reliefs only');
 
@@ -35,7 +44,10 @@ test('lengths of a sewn star: chosen, typed, diagnosed, made up for in the next 
   }
   await fields.first().fill('about a hand');
   await expect(dialog(page).getByText('Type a length in millimetres, such as 143.5')).toBeVisible();
-  await expect(dialog(page).getByRole('button', { name: 'Find out why' })).toHaveAttribute('aria-disabled', 'true');
+  await expect(dialog(page).getByRole('button', { name: 'Find out why' })).toHaveAttribute(
+    'aria-disabled',
+    'true',
+  );
   const first = Number.parseFloat((await rows.first().locator('td').nth(2).textContent()) ?? '');
   await fields.first().fill((1.03 * first).toFixed(1));
 
@@ -53,5 +65,7 @@ test('lengths of a sewn star: chosen, typed, diagnosed, made up for in the next 
   await expect(found.getByRole('button', { name: 'Used in the next plan' })).toBeVisible();
   await page.keyboard.press('Escape');
   await page.getByRole('radio', { name: 'Sheets to cut' }).click();
-  await expect(page.getByText(/The plan makes up for: Plan cut at another size/)).toBeVisible({ timeout: 60_000 });
+  await expect(page.getByText(/The plan makes up for: Plan cut at another size/)).toBeVisible({
+    timeout: 60_000,
+  });
 });

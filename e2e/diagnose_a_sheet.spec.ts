@@ -227,6 +227,28 @@ test('a scan is measured, its corners set by hand, and becomes an object', async
   await expect(page.getByRole('button', { name: /^scan \d+ points/ })).toBeVisible();
 });
 
+test('photographs with a phone are measured, and their points become an object', async ({ page }) => {
+  await openRoom(page);
+  const taken = (name: string) => ({
+    ...fileOf(name, ''),
+    buffer: readFileSync(new URL(`../tests/jobs/photographs/${name}`, import.meta.url)),
+  });
+  const photograph = (number: number) => taken(`photo${number}.jpg`);
+  await give(page, [photograph(1), photograph(2)]);
+  await expect(page.getByText('Still missing: pattern.')).toBeVisible();
+  await give(page, [photograph(3), taken('pattern.json')]);
+  await expect(page.getByRole('img', { name: 'photo3.jpg' })).toBeVisible();
+  await page.getByRole('textbox', { name: 'Height of the board' }).fill('12');
+  await page.getByRole('textbox', { name: 'Height of the board' }).press('Enter');
+  await page.getByRole('button', { name: 'Measure the photographs' }).click();
+  await expect(page.getByRole('button', { name: 'Use these points' })).toBeVisible(seen);
+  await expect(page.getByText(/^\d\d of 25 marks$/)).toBeVisible();
+  await expect(page.getByText('found in one photograph only')).toBeVisible();
+  await expectAccessible(page, 'photographs');
+  await page.getByRole('button', { name: 'Use these points' }).click();
+  await expect(page.getByText('Still missing: mould.obj and setup.json')).toBeVisible();
+});
+
 test('a virtual object with a fault of one’s choice', async ({ page }) => {
   await openRoom(page);
   await page.getByRole('button', { name: 'Try a virtual object' }).click();

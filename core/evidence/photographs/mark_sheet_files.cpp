@@ -39,11 +39,13 @@ void blacken(std::vector<double>& black, int width, int height, const Vec2& lowe
           common_length(lower.x(), upper.x(), x) * common_length(lower.y(), upper.y(), y);
 }
 
-double number_at(const Json& list, std::size_t i, double from, double to) {
-  if (!list.is_array() || list.size() <= i || !list[i].is_number() ||
-      !(list[i].get<double>() >= from && list[i].get<double>() <= to))
+double number_of(const Json& value, double from, double to) {
+  if (!value.is_number() || !(value.get<double>() >= from && value.get<double>() <= to))
     refuse_pattern("A number of pattern.json is missing or out of range: give the file as evidence-pattern wrote it.");
-  return list[i].get<double>();
+  return value.get<double>();
+}
+double number_at(const Json& list, std::size_t i, double from, double to) {
+  return number_of(list.is_array() && list.size() > i ? list[i] : Json(), from, to);
 }
 const Json& member(const Json& object, const char* key) {
   if (!object.is_object() || !object.contains(key))
@@ -167,7 +169,7 @@ MarkSheet read_mark_sheet(ByteView bytes) {
   sheet.opening_mm = pair_of(json, "clamp_opening_mm", 3000);
   if (sheet.opening_mm.minCoeff() < 10 || sheet.sheet_mm.minCoeff() < 10)
     refuse_pattern("The pattern's sheet has no size: give pattern.json as evidence-pattern wrote it.");
-  const auto length = [&](const char* key) { return number_at(Json{member(json, key)}, 0, 0.5, 3000); };
+  const auto length = [&](const char* key) { return number_of(member(json, key), 0.5, 3000); };
   sheet.check_mm = length("board_check_mm");
   sheet.marks = marks_of(json, length("mark_mm"));
   const Json& strips = member(json, "strips");
@@ -185,7 +187,7 @@ MarkSheet read_mark_sheet(ByteView bytes) {
     const Json& name = member(strips[k], "name");
     strip.name = name.is_string() ? name.get<std::string>().substr(0, 40) : "";
     strip.origin_mm = pair_of(strips[k], "origin_mm", 3000);
-    strip.quarter_turns = static_cast<int>(number_at(Json{member(strips[k], "quarter_turns")}, 0, 0, 3));
+    strip.quarter_turns = static_cast<int>(number_of(member(strips[k], "quarter_turns"), 0, 3));
     strip.lower_mm = pair_of(strips[k], "lower_mm", 3000);
     strip.upper_mm = pair_of(strips[k], "upper_mm", 3000);
     strip.marks = marks_of(strips[k], length("board_mark_mm"));

@@ -18,10 +18,10 @@ constexpr int min_board_marks_seen = 4;
 constexpr int min_strips_seen = 2;
 constexpr std::array<double, 4> usual_focal_lengths{0.75, 0.55, 1.1, 2.0};  // of the picture's longer side
 constexpr int start_iterations = 15, iterations = 60;
-constexpr double outlier_distance = 4.5;   // usual distances
+constexpr double outlier_distance = 4.5;      // usual distances
 constexpr double min_start_angle_rad = 0.01;  // between two rays of a point
-constexpr double worst_start_px = 0.01;    // of the longer side: what a point may be off before the adjustment
-constexpr double worst_camera_px = 0.004;  // of the longer side: RMS of a photograph in which the board has moved
+constexpr double worst_start_px = 0.01;       // of the longer side: what a point may be off before the adjustment
+constexpr double worst_camera_px = 0.004;     // of the longer side: RMS of a photograph in which the board has moved
 
 const char* const board_in_view = "keep the strips on the clamp frame in view, all four if possible";
 

@@ -32,7 +32,7 @@ export function arePhotographs(
 }
 
 /** "photograph", "photograph_2", ... */
-export const photographInput = (index: number): string =>
+const photographInput = (index: number): string =>
   index === 0 ? 'photograph' : `photograph_${index + 1}`;
 
 /** Photographs are added to those that are there, under the next numbers; the last pattern.json stays. */

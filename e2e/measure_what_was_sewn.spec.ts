@@ -34,7 +34,7 @@ test('lengths of a sewn star: chosen, typed, diagnosed, made up for in the next 
   await dialog(page).getByRole('button', { name: 'Choose the lengths' }).click();
   const fields = dialog(page).getByRole('textbox', { name: /^Measured from mark/ });
   await expect(fields).toHaveCount(20, { timeout: 120_000 });
-  await expectAccessible(page);
+  await expectAccessible(page, 'lengths of what was sewn');
 
   // Everything was cut 3 % too large; what is no length is said beside its field.
   const rows = dialog(page).locator('tbody tr');

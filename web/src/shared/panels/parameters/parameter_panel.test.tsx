@@ -55,7 +55,7 @@ const show = async (operation: string, errors = {}) => {
 beforeEach(() => (parameters.value = {}));
 
 it('an operation with few parameters has no search', async () => {
-  await show('evidence-pattern');
+  await show('evidence-diagnose-relief');
   expect(one('[role=searchbox]')).toBeNull();
 });
 

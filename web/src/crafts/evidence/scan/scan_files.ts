@@ -32,8 +32,7 @@ export function arePhotographs(
 }
 
 /** "photograph", "photograph_2", ... */
-const photographInput = (index: number): string =>
-  index === 0 ? 'photograph' : `photograph_${index + 1}`;
+const photographInput = (index: number): string => (index === 0 ? 'photograph' : `photograph_${index + 1}`);
 
 /** Photographs are added to those that are there, under the next numbers; the last pattern.json stays. */
 export function photographInputs(files: readonly File[], photographsBefore: number): InputFile[] {

@@ -193,7 +193,7 @@ std::vector<FlagInfo> operation_flags(const Operation& operation) {
          {"local", "slurm"}});
     flags.push_back(
         {"--slurm-option", "OPTION",
-         "An option for sbatch, such as --mem=4G. May be given several times. The variables SBATCH_PARTITION, SBATCH_ACCOUNT and SBATCH_TIMELIMIT work without it.",
+         "An option for sbatch with its dashes, for memory, constraints and the like. May be given several times. The variables SBATCH_PARTITION, SBATCH_ACCOUNT and SBATCH_TIMELIMIT work without it.",
          "Cluster"});
     flags.push_back(
         {"--local-seconds", "N",

@@ -202,6 +202,31 @@ struct PrintedSheet {
   }
 };
 
+/// The design of a small zippable, for what is made of it.
+Bytes zippable_design(Session& session) {
+  const Json message = {{"operation", "zippable-design"},
+                        {"inputs", {{"mesh", {{"sample", "t_shape"}, {"vertices", 2000}}}}},
+                        {"outputs", {"design.json"}},
+                        {"parameters", {{"size_mm", 200}, {"width_mm", 60}}}};
+  return *run_job(message, [](const std::string&) { return nullptr; }, session, {}).outputs.at(0).bytes;
+}
+
+/// That design with the lengths that a tape would take if all were as designed.
+Bytes measured_zippable(Session& session) {
+  const auto design = std::make_shared<const Bytes>(zippable_design(session));
+  const std::string hash(64, 'd');
+  const Json message = {{"operation", "evidence-plan-lengths"},
+                        {"inputs", {{"design", {{"sha256", hash}, {"file_name", "design.json"}}}}},
+                        {"outputs", Json::array()},
+                        {"parameters", {{"length_count", 8}}}};
+  const JobResult planned = run_job(message, [&](const std::string&) { return design; }, session, {});
+  std::string lengths = "from,to,state,length_mm\n";
+  for (const Json& length : planned.report.at("lengths"))
+    lengths += length["from"].get<std::string>() + "," + length["to"].get<std::string>() + "," +
+               length["state"].get<std::string>() + "," + length["expected_mm"].dump() + "\n";
+  return pack_files({{"design.json", *design}, {"lengths.csv", as_bytes(lengths)}}, Context());
+}
+
 /// A measured object, and a photographed relief, as small as they can be, packed.
 struct MeasuredObjects {
   std::map<std::string, Bytes> of_operation;
@@ -230,17 +255,9 @@ struct MeasuredObjects {
     of_operation["evidence-diagnose-relief"] = pack_files(
         {{"relief.obj", as_bytes(relief)}, {"setup.json", as_bytes(setup)}, {"shading.csv", as_bytes(points)}},
         Context());
+    of_operation["evidence-diagnose-zippable"] = measured_zippable(session);
   }
 };
-
-/// The design of a small zippable, for what is made of it.
-Bytes zippable_design(Session& session) {
-  const Json message = {{"operation", "zippable-design"},
-                        {"inputs", {{"mesh", {{"sample", "t_shape"}, {"vertices", 2000}}}}},
-                        {"outputs", {"design.json"}},
-                        {"parameters", {{"size_mm", 200}, {"width_mm", 60}}}};
-  return *run_job(message, [](const std::string&) { return nullptr; }, session, {}).outputs.at(0).bytes;
-}
 
 TEST_CASE("RunJob.ReportsOnlyDeclaredFigures") {
   Session session;

@@ -11,9 +11,9 @@
 
 namespace formwright {
 namespace {
-using test::planned;
 using Catch::Matchers::WithinAbs;
 using Catch::Matchers::WithinRel;
+using test::planned;
 
 const FlatDesign& star() {
   static const FlatDesign design = test::designed("star", 25, 200);
@@ -37,11 +37,10 @@ TEST_CASE("PlanCorrection.ClothThatChangesOnceItIsCutEndsAsItWasDesigned") {
   PlanOptions options;
   options.kerf_mm = 0;
   const double wanted = cut_area_mm2(planned(star(), options), Eigen::Matrix2d::Identity());
-  for (const auto& errors :
-       std::vector<MakingErrors>{{.plan_scale = 0.03},
-                                 {.cloth_stretch_along = 0.05, .cloth_stretch_across = -0.04},
-                                 {.cloth_stretch_along = -0.02, .cloth_bias = 0.05},
-                                 {.cloth_bias = -0.05}}) {
+  for (const auto& errors : std::vector<MakingErrors>{{.plan_scale = 0.03},
+                                                      {.cloth_stretch_along = 0.05, .cloth_stretch_across = -0.04},
+                                                      {.cloth_stretch_along = -0.02, .cloth_bias = 0.05},
+                                                      {.cloth_bias = -0.05}}) {
     static_cast<MakingErrors&>(options) = errors;
     const ZippablePlan plan = planned(star(), options);
     CHECK_THAT(cut_area_mm2(plan, errors.cloth_change()), WithinRel(wanted, 1e-9));

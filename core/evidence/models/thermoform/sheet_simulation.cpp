@@ -52,10 +52,10 @@ TriangleMesh unpacked_mould(ByteView bytes) {
   TriangleMesh mesh;
   mesh.V.resize(static_cast<Eigen::Index>(counts[0]), 3);
   mesh.F.resize(static_cast<Eigen::Index>(counts[1]), 3);
-  const std::size_t vertex_bytes = counts[0] * 3 * sizeof(double);
+  const auto vertex_bytes = static_cast<std::size_t>(counts[0] * 3 * sizeof(double)),
+             face_bytes = static_cast<std::size_t>(counts[1] * 3 * sizeof(int));
   if (vertex_bytes > 0) std::memcpy(mesh.V.data(), bytes.data() + sizeof counts, vertex_bytes);
-  if (counts[1] > 0)
-    std::memcpy(mesh.F.data(), bytes.data() + sizeof counts + vertex_bytes, counts[1] * 3 * sizeof(int));
+  if (counts[1] > 0) std::memcpy(mesh.F.data(), bytes.data() + sizeof counts + vertex_bytes, face_bytes);
   if (mesh.F.size() == 0 || mesh.F.minCoeff() < 0 || mesh.F.maxCoeff() >= mesh.vertex_count() || !mesh.V.allFinite())
     throw_damaged("The mould of a simulation is no mesh");
   return mesh;
@@ -122,7 +122,8 @@ Json simulation_recipe(const SheetSimulation& simulation) {
 Bytes packed_mould(const TriangleMesh& mesh) {
   const std::uint64_t counts[2] = {static_cast<std::uint64_t>(mesh.V.rows()),
                                    static_cast<std::uint64_t>(mesh.F.rows())};
-  const std::size_t vertex_bytes = counts[0] * 3 * sizeof(double), face_bytes = counts[1] * 3 * sizeof(int);
+  const auto vertex_bytes = static_cast<std::size_t>(counts[0] * 3 * sizeof(double)),
+             face_bytes = static_cast<std::size_t>(counts[1] * 3 * sizeof(int));
   Bytes bytes(sizeof counts + vertex_bytes + face_bytes);
   std::memcpy(bytes.data(), counts, sizeof counts);
   if (vertex_bytes > 0) std::memcpy(bytes.data() + sizeof counts, mesh.V.data(), vertex_bytes);

@@ -53,6 +53,7 @@ test('lengths of a sewn star: chosen, typed, diagnosed, made up for in the next 
 
   // What was typed is there after a reload.
   await page.keyboard.press('Escape');
+  await expect(page.getByText('Saved', { exact: true })).toBeVisible();
   await page.reload();
   await page.getByRole('button', { name: 'Measure what you sewed' }).click();
   await expect(fields.first()).toHaveValue((1.03 * first).toFixed(1));

@@ -176,14 +176,25 @@ function Lengths({ session, check, state, title }: LengthsProps) {
       </thead>
       <tbody>
         {rows.map(({ length, i }) => (
-          <Row key={i} length={length} onType={(text) => type(i, text)} />
+          <Row
+            key={i}
+            length={length}
+            onType={(text) => type(i, text)}
+            onLeave={() => session.services.projects.commit()}
+          />
         ))}
       </tbody>
     </table>
   );
 }
 
-function Row({ length, onType }: { length: SewnLength; onType: (text: string) => void }) {
+interface RowProps {
+  readonly length: SewnLength;
+  readonly onType: (text: string) => void;
+  readonly onLeave: () => void;
+}
+
+function Row({ length, onType, onLeave }: RowProps) {
   const id = useId();
   const problem =
     problemOf(length) ?? (isStrange(length) ? 'Far from what is expected: the right marks?' : null);
@@ -201,6 +212,7 @@ function Row({ length, onType }: { length: SewnLength; onType: (text: string) =>
           aria-invalid={problemOf(length) !== null}
           aria-describedby={problem ? id : undefined}
           onInput={(event) => onType(event.currentTarget.value)}
+          onBlur={onLeave}
         />
         {problem ? (
           <small id={id} class="sewn-problem">

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Measure what was sewn, learn what goes wrong in the workshop, and have the next plan make up for it.
 import { useSignal } from '@preact/signals';
-import { useId } from 'preact/hooks';
-import { Button, Dialog, formatNumber, withUnit } from '../../../ui';
+import { useEffect, useId, useRef } from 'preact/hooks';
+import { Button, Dialog, withUnit } from '../../../ui';
 import { readDiagnosis } from '../../../shared/diagnosis/diagnosis';
 import { sureWords, whyWords } from '../../../shared/diagnosis/diagnosis_words';
 import type { ZippableSession } from '../zippable_session';
@@ -202,7 +202,7 @@ function Row({ length, onType, onLeave }: RowProps) {
     <tr>
       <td>{length.from}</td>
       <td>{length.to}</td>
-      <td>{withUnit(formatNumber(length.expected_mm, 4), 'mm')}</td>
+      <td>{withUnit(length.expected_mm.toFixed(1), 'mm')}</td>
       <td>
         <input
           type="text"
@@ -236,8 +236,11 @@ function Finding({ session, check, found }: FindingProps) {
   const remedies = causes.filter(({ name }) => named.includes(name)).map(({ remedy }) => remedy);
   const tells = alike.map(({ measurement }) => measurement).filter(Boolean);
   const used = isUsed(session, check);
+  const ref = useRef<HTMLElement>(null);
+  // Below a long list of lengths nobody would see it.
+  useEffect(() => ref.current?.scrollIntoView({ block: 'nearest' }), [found]);
   return (
-    <section class="sewn-found" aria-label="What was found">
+    <section ref={ref} class="sewn-found" aria-label="What was found">
       <h3>What was found</h3>
       <p>{whyWords(diagnosis)}</p>
       {remedies.map((remedy) => (

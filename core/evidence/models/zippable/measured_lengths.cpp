@@ -63,6 +63,10 @@ ZipperMark mark_in(std::string_view text, std::size_t line, const char* column, 
 
 }  // namespace
 
+std::string mark_text(const ZipperMark& mark, bool flat) {
+  return std::to_string(mark.number) + (flat ? (mark.left ? "L" : "R") : "");
+}
+
 std::vector<MeasuredLength> read_measured_lengths(ByteView csv) {
   std::string_view text = as_text(csv);
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);

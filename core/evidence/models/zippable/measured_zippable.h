@@ -39,6 +39,9 @@ struct MeasuredZippable {
   double scan_offset_mm() const { return scan_is_outside ? 0.5 * setup.thickness_mm : 0; }
 };
 
+/// "12"; "12L" or "12R" on the flat pieces: as lengths.csv has it.
+std::string mark_text(const ZipperMark& mark, bool flat);
+
 /// CSV with the header from,to,state,length_mm,sigma_mm: marks as "12", or "12L" and "12R" for one side of the flat
 /// ribbon; the state is zipped or flat; without sigma 0.5 mm. Rows without a length are passed over. Throws
 /// Error{invalid_input, "object"}, naming the line.

@@ -51,10 +51,6 @@ std::vector<OutputInfo> diagnose_zippable_outputs() {
   return outputs;
 }
 
-std::string mark_name(const ZipperMark& mark, bool flat) {
-  return std::to_string(mark.number) + (flat ? (mark.left ? "L" : "R") : "");
-}
-
 /// Empty where only scans were made.
 std::string lengths_csv(const ZippableModel& model, const Diagnosis& d) {
   std::string text;
@@ -67,8 +63,8 @@ std::string lengths_csv(const ZippableModel& model, const Diagnosis& d) {
         char numbers[160];
         std::snprintf(numbers, sizeof numbers, ",%.6g,%.4g,%.6g,%.6g\n", length.length_mm, length.sigma_mm,
                       d.base.predictions[m](row, 0), d.extended.predictions[m](row, 0));
-        text += table_name(object.name) + "," + mark_name(length.from, length.flat) + "," +
-                mark_name(length.to, length.flat) + "," + (length.flat ? "flat" : "zipped") + numbers;
+        text += table_name(object.name) + "," + mark_text(length.from, length.flat) + "," +
+                mark_text(length.to, length.flat) + "," + (length.flat ? "flat" : "zipped") + numbers;
       }
       ++m;
     }

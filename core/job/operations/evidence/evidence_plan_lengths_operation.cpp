@@ -63,10 +63,6 @@ std::vector<ReportField> plan_lengths_fields() {
       {"peak_memory_mb", "Peak memory", "MB", "Largest amount of memory that the process used."}};
 }
 
-std::string mark_in_form(const ZipperMark& mark, bool flat) {
-  return std::to_string(mark.number) + (flat ? (mark.left ? "L" : "R") : "");
-}
-
 OperationResult run_evidence_plan_lengths(const OperationCall& call, const PlanLengthsOptions& o) {
   Stopwatch watch;
   Context& context = call.context;
@@ -105,7 +101,7 @@ OperationResult run_evidence_plan_lengths(const OperationCall& call, const PlanL
   std::string form = "from,to,state,length_mm,sigma_mm,expected_mm\n";
   for (const Eigen::Index row : plan.chosen) {
     const MeasuredLength& length = candidates[static_cast<std::size_t>(row)];
-    const std::string from = mark_in_form(length.from, length.flat), to = mark_in_form(length.to, length.flat);
+    const std::string from = mark_text(length.from, length.flat), to = mark_text(length.to, length.flat);
     const char* state = length.flat ? "flat" : "zipped";
     const double expected_mm = std::round(10 * plan.expected.front()(row, 0)) / 10;
     list.push_back({{"from", from}, {"to", to}, {"state", state}, {"expected_mm", expected_mm}});

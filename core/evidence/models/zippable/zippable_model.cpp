@@ -172,7 +172,8 @@ Eigen::MatrixXd ZippableModel::lengths_at(int object, const Eigen::VectorXd& u, 
   cut.more_gap_mm = cut.seam_take_up_mm = 0;
   const RibbonPattern flat = made_pattern(pattern, cut);
   std::vector<int> triangle_of(static_cast<std::size_t>(pattern.flat.vertex_count()), 0);
-  for (int f = 0; f < pattern.flat.face_count(); ++f)
+  // The first triangle at a vertex, as piece_turn() has it.
+  for (int f = pattern.flat.face_count(); f-- > 0;)
     for (int k = 0; k < 3; ++k) triangle_of[static_cast<std::size_t>(pattern.flat.F(f, k))] = f;
   const double farther = 1 + value("marks_scale", u), larger = 1 + value("tape_scale", u);
   Eigen::MatrixXd lengths(static_cast<Eigen::Index>(own.lengths.size()), 1);

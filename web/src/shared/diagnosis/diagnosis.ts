@@ -192,7 +192,7 @@ export function readingWords({ reading, alike }: Pick<Diagnosis, 'reading' | 'al
     case 'none':
       return 'Nothing to fix: the remaining error is as small as the measuring noise. The simulation with the calibrated material can be used as it is.';
     case 'unknown':
-      return 'The measured sheet differs in a systematic way that none of the known causes explains. Look for other causes.';
+      return 'The measurement differs in a systematic way that none of the known causes explains. Look for other causes.';
     case 'cannot_separate': {
       const labels = alike[0]?.labels ?? [];
       return labels.length === 2

@@ -85,7 +85,7 @@ describe('photographs on their way to points', () => {
     expect(names(2)[0]).toEqual(['photograph_3', 'a.jpg']);
   });
 
-  it('are told from the picture of a scan', () => {
+  it('are distinguished from the picture of a scan', () => {
     const none = { photographs: false, scan: false };
     expect(arePhotographs(files, none)).toBe(true);
     expect(arePhotographs([{ name: 'a.obj' }, ...files], none)).toBe(false);

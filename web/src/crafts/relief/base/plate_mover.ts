@@ -38,7 +38,7 @@ export abstract class PlateMover<P extends { readonly turn_deg: number }> implem
   /** Null for keys that do nothing here. */
   protected abstract byKey(place: P, grip: Grip, key: string, fine: boolean): P | null;
   /** Where a handle other than that for turning is dragged from one place in the picture to another; null where it
-   *  cannot be told. */
+   *  cannot be found. */
   protected abstract dragged(
     place: P,
     grip: Grip,

@@ -30,7 +30,7 @@ export interface SewnCheck {
   readonly plan: BlobReference;
   /** What that plan made up for already, by the names of the errors of making. */
   readonly corrected: Readonly<Record<string, number>>;
-  /** The plan's own sentence on what these lengths would show. */
+  /** What these lengths would show, in a sentence. */
   readonly outlook: string;
   readonly lengths: readonly SewnLength[];
   readonly found: SewnFinding | null;

@@ -146,7 +146,7 @@ double mean_distance(const ForwardModel& model, const Predictions& left) {
   return count > 0 ? sum / count : 0;
 }
 
-Calibration calibrate(SimulationBag& bag, Context& context) {
+Calibration calibrate(SimulationBag& bag, Context& context, const Eigen::VectorXd& start) {
   Stopwatch watch;
   const ForwardModel& model = bag.model();
   Calibration result;
@@ -154,8 +154,10 @@ Calibration calibrate(SimulationBag& bag, Context& context) {
   ParameterFit fit;
   {
     const auto span = context.span(0.05, 0.6, "Fitting");
-    fit = fit_parameters(bag, *mean_distance_objective(model, largest_noise(model, result.noise)),
-                         model.base_parameters(), model.nominal(), {}, {}, context, "Fitting");
+    std::vector<Eigen::VectorXd> starts{model.nominal()};
+    if (start.size() > 0) starts.push_back(start);
+    fit = fit_from_best(bag, *mean_distance_objective(model, largest_noise(model, result.noise)),
+                        model.base_parameters(), starts, {}, {}, context, "Fitting");
   }
   result.u = fit.u;
   result.predictions = fit.predictions;
@@ -176,8 +178,9 @@ Calibration calibrate(SimulationBag& bag, Context& context) {
     for (std::size_t object = 0; object < precisions.size(); ++object)
       precisions[object] = isotropic(mean_weights(precisions[object]), model.measurements()[object].measured.cols());
     const MisfitOfAll misfit(model, precisions);
-    const StructuredObjective objective(
-        model, misfit, likeliest_structure(model, misfit, residuals(model, fit.predictions)), discrepancies, freedom);
+    const StructuredObjective objective(model, misfit,
+                                        likeliest_structure(model, misfit, residuals(model, fit.predictions)),
+                                        Liberties{discrepancies, freedom});
     result.profiles = profile(bag, fit, objective, context);
   }
   result.simulations = bag.simulations();

@@ -28,8 +28,9 @@ struct Calibration {
   double seconds = 0;
 };
 
-/// By Levenberg and Marquardt from the nominal values. Throws Error{could_not_solve, cancelled}.
-Calibration calibrate(SimulationBag& bag, Context& context);
+/// By Levenberg and Marquardt from the nominal values or, where it is better and not empty, from `start`. Throws
+/// Error{could_not_solve, cancelled}.
+Calibration calibrate(SimulationBag& bag, Context& context, const Eigen::VectorXd& start = {});
 
 /// As in [Sch18]: `per_side` values of each of `grid_parameters` over `low` to `high` (values; as many as
 /// parameters), at each the best small translation of the mould by `place_parameters` (at most 2, each within `reach`

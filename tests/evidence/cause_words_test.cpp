@@ -41,9 +41,6 @@ TEST_CASE("CauseWords.SayWhereAndHowMuch") {
   CHECK(words("scan_scale", {0.01}) == "The scan is about 1 % larger than the object.");
   CHECK(words("scan_shift", {1.5, -0.4, 0.8}) ==
         "The scan lies about 1.5 mm to the right, 0.4 mm to the front and 0.8 mm up from where the object was.");
-  CHECK(
-      words("lasting_network", {0.1}) ==
-      "Our simulation leaves out that about 10 % of the hot plastic's stiffness never flows, which keeps steep walls thicker.");
   CHECK(words("sorcery", {1}).empty());
   CHECK(words("slip", {}).empty());
 }
@@ -51,8 +48,8 @@ TEST_CASE("CauseWords.SayWhereAndHowMuch") {
 TEST_CASE("CauseWords.EveryCauseOfTheModelHasThem") {
   std::vector<ModelParameter> parameters;
   std::vector<Cause> causes;
-  declare_thermoform_parameters(Json::object(), false, {}, parameters, causes);
-  REQUIRE(causes.size() == 15);
+  declare_thermoform_parameters(Json::object(), {}, parameters, causes);
+  REQUIRE(causes.size() == 14);
   for (const Cause& cause : causes)
     for (const double value : {-0.2, 0.0, 0.2}) {
       INFO(cause.name);

@@ -32,7 +32,7 @@ inline void check_one_answer(const Diagnosis& d) {
     for (const Answer& answer : d.answers) CHECK(answer.causes != f.causes);
 }
 
-inline Diagnosis diagnosed(const ToyModel& model) {
+inline Diagnosis diagnosed(const ForwardModel& model) {
   SimulationBag bag(model);
   Context context;
   Diagnosis d = diagnose(bag, {}, context);

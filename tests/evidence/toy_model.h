@@ -85,6 +85,11 @@ class ToyModel : public ForwardModel {
     }
   }
   Measurement& measurement() { return measurements_.front(); }
+  /// So much of every effect there may be though nothing is wrong.
+  void set_usual_sd(double usual_sd) {
+    for (ModelParameter& p : parameters_)
+      if (p.role == ParameterRole::effect) p.usual_sd = usual_sd;
+  }
   void set_gain_error(double share) {
     for (Cause& cause : causes_) cause.gain_error = share;
   }

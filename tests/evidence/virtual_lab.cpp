@@ -58,7 +58,7 @@ TriangleMesh make_mould(Mould mould) {
 std::vector<std::string> cause_names() {
   std::vector<ModelParameter> parameters;
   std::vector<Cause> causes;
-  declare_thermoform_parameters(Json::object(), false, {}, parameters, causes);
+  declare_thermoform_parameters(Json::object(), {}, parameters, causes);
   std::vector<std::string> names;
   for (const Cause& cause : causes) names.push_back(cause.name);
   return names;

@@ -6,7 +6,10 @@
 #include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include <Eigen/Dense>
+#include <cmath>
 #include <limits>
+#include <numbers>
+#include <vector>
 
 #include "thermoform/sheet/hinge_bending.h"
 #include "thermoform/sheet_fixture.h"
@@ -31,7 +34,8 @@ MembraneMaterial material(ElasticLaw law, double network_share = 0) {
 }
 
 TEST_CASE("EveryLaw.forces_are_the_negative_gradient_of_the_energy") {
-  const ElasticLaw law = GENERATE(ElasticLaw::st_venant_kirchhoff, ElasticLaw::stable_neo_hookean);
+  const ElasticLaw law =
+      GENERATE(ElasticLaw::st_venant_kirchhoff, ElasticLaw::stable_neo_hookean, ElasticLaw::incompressible_neo_hookean);
   const double network_share = GENERATE(0.0, 0.3, 1.0);
   const SheetMesh sheet = small_sheet();
   Membrane membrane(sheet.flat_mm, sheet.F, 0.8, material(law, network_share));
@@ -54,7 +58,8 @@ TEST_CASE("EveryLaw.forces_are_the_negative_gradient_of_the_energy") {
 }
 
 TEST_CASE("EveryLaw.stiffness_in_tension_is_the_derivative_of_the_forces") {
-  const ElasticLaw law = GENERATE(ElasticLaw::st_venant_kirchhoff, ElasticLaw::stable_neo_hookean);
+  const ElasticLaw law =
+      GENERATE(ElasticLaw::st_venant_kirchhoff, ElasticLaw::stable_neo_hookean, ElasticLaw::incompressible_neo_hookean);
   const double network_share = GENERATE(0.0, 0.3, 1.0);
   const SheetMesh sheet = small_sheet();
   Membrane membrane(sheet.flat_mm, sheet.F, 0.8, material(law, network_share));
@@ -88,7 +93,8 @@ TEST_CASE("EveryLaw.stiffness_in_tension_is_the_derivative_of_the_forces") {
 }
 
 TEST_CASE("EveryLaw.stiffness_is_symmetric_and_has_no_negative_curvature") {
-  const ElasticLaw law = GENERATE(ElasticLaw::st_venant_kirchhoff, ElasticLaw::stable_neo_hookean);
+  const ElasticLaw law =
+      GENERATE(ElasticLaw::st_venant_kirchhoff, ElasticLaw::stable_neo_hookean, ElasticLaw::incompressible_neo_hookean);
   const double network_share = GENERATE(0.0, 0.3, 1.0);
   const SheetMesh sheet = small_sheet();
   MembraneMaterial flowing = material(law, network_share);
@@ -114,7 +120,8 @@ TEST_CASE("EveryLaw.stiffness_is_symmetric_and_has_no_negative_curvature") {
 }
 
 TEST_CASE("EveryLaw.turning_and_shifting_the_sheet_turns_its_forces") {
-  const ElasticLaw law = GENERATE(ElasticLaw::st_venant_kirchhoff, ElasticLaw::stable_neo_hookean);
+  const ElasticLaw law =
+      GENERATE(ElasticLaw::st_venant_kirchhoff, ElasticLaw::stable_neo_hookean, ElasticLaw::incompressible_neo_hookean);
   const double network_share = GENERATE(0.0, 0.3, 1.0);
   const SheetMesh sheet = small_sheet();
   Membrane membrane(sheet.flat_mm, sheet.F, 1, material(law, network_share));
@@ -132,7 +139,8 @@ TEST_CASE("EveryLaw.turning_and_shifting_the_sheet_turns_its_forces") {
 
 /// Equal stretch in both directions: sigma h = Y h / (1 - nu) eps for both laws as eps goes to 0.
 TEST_CASE("EveryLaw.small_stretch_has_plane_stress_stiffness") {
-  const ElasticLaw law = GENERATE(ElasticLaw::st_venant_kirchhoff, ElasticLaw::stable_neo_hookean);
+  const ElasticLaw law =
+      GENERATE(ElasticLaw::st_venant_kirchhoff, ElasticLaw::stable_neo_hookean, ElasticLaw::incompressible_neo_hookean);
   const double network_share = GENERATE(0.0, 0.3, 1.0);
   const SheetMesh sheet = make_sheet_mesh(Vec2(20, 20), 8);
   const MembraneMaterial m = material(law, network_share);
@@ -142,8 +150,9 @@ TEST_CASE("EveryLaw.small_stretch_has_plane_stress_stiffness") {
     Positions x = Positions::Zero(sheet.flat_mm.rows(), 3);
     membrane.begin_step((x.leftCols(2) = sheet.flat_mm, x), none_held(sheet));
     x.leftCols(2) *= 1 + strain;
+    const double poisson_ratio = law == ElasticLaw::incompressible_neo_hookean ? 0.5 : m.poisson_ratio;
     const double energy = membrane.energy(x, for_ever),
-                 expected = 400 * m.young_mpa / (1 - m.poisson_ratio) * strain * strain;
+                 expected = 400 * m.young_mpa / (1 - poisson_ratio) * strain * strain;
     const double error = std::abs(energy / expected - 1);
     CHECK(error < 3 * strain);
     if (last > 0) {
@@ -151,6 +160,74 @@ TEST_CASE("EveryLaw.small_stretch_has_plane_stress_stiffness") {
     }
     last = error;
   }
+}
+
+/// Energy (mJ/mm^3) of the incompressible neo-Hookean law, E/6 (l1^2 + l2^2 + l3^2 - 3) with l3 = 1/(l1 l2) [Tre75].
+double incompressible_density(double young_mpa, double l1, double l2) {
+  return young_mpa / 6 * (l1 * l1 + l2 * l2 + 1 / (l1 * l1 * l2 * l2) - 3);
+}
+
+TEST_CASE("IncompressibleLaw.energy_of_an_even_stretch_is_the_closed_form") {
+  const double network_share = GENERATE(0.0, 0.3, 1.0);
+  const SheetMesh sheet = make_sheet_mesh(Vec2(20, 10), 32);
+  const MembraneMaterial m = material(ElasticLaw::incompressible_neo_hookean, network_share);
+  Membrane membrane(sheet.flat_mm, sheet.F, 0.8, m);
+  Positions x = Positions::Zero(sheet.flat_mm.rows(), 3);
+  for (const auto& [l1, l2] : {std::pair(1.8, 1.3), std::pair(2.5, 0.7), std::pair(1.0, 1.0)}) {
+    x.col(0) = l1 * sheet.flat_mm.col(0);
+    x.col(1) = l2 * sheet.flat_mm.col(1);
+    membrane.begin_step(x, none_held(sheet));
+    CHECK_THAT(membrane.energy(x, for_ever), WithinAbs(160 * incompressible_density(m.young_mpa, l1, l2), 1e-9));
+  }
+}
+
+TEST_CASE("IncompressibleLaw.energy_of_an_uneven_stretch_converges_with_second_order") {
+  const MembraneMaterial m = material(ElasticLaw::incompressible_neo_hookean);
+  const double length = 20, amplitude = 3;
+  const auto stretch = [&](double at) {
+    return 1.4 + amplitude * std::numbers::pi / length * std::cos(std::numbers::pi * at / length);
+  };
+  double expected = 0;
+  constexpr int parts = 4000;
+  for (int i = 0; i < parts; ++i) {
+    const double at = length * ((i + 0.5) / parts - 0.5);
+    expected += length / parts * length * 0.8 * incompressible_density(m.young_mpa, stretch(at), 1);
+  }
+  std::vector<double> errors;
+  for (const int triangles : {128, 512, 2048}) {
+    const SheetMesh sheet = make_sheet_mesh(Vec2(length, length), triangles);
+    Membrane membrane(sheet.flat_mm, sheet.F, 0.8, m);
+    Positions x = Positions::Zero(sheet.flat_mm.rows(), 3);
+    x.leftCols(2) = sheet.flat_mm;
+    for (Eigen::Index i = 0; i < x.rows(); ++i)
+      x(i, 0) = 1.4 * x(i, 0) + amplitude * std::sin(std::numbers::pi * x(i, 0) / length);
+    membrane.begin_step(x, none_held(sheet));
+    errors.push_back(std::abs(membrane.energy(x, for_ever) - expected));
+  }
+  CHECK_THAT(std::log2(errors[0] / errors[1]), WithinAbs(2, 0.2));
+  CHECK_THAT(std::log2(errors[1] / errors[2]), WithinAbs(2, 0.2));
+}
+
+/// Pulled alike in two directions the sheet is stiffer than pulled in one alone, in the ratio of the closed forms
+/// [Tre75]: E/3 (l - l^-5) against E/3 (l - l^-2) for each mm^2 of the flat sheet.
+TEST_CASE("IncompressibleLaw.pull_in_one_and_in_two_directions") {
+  const SheetMesh sheet = make_sheet_mesh(Vec2(20, 20), 32);
+  const MembraneMaterial m = material(ElasticLaw::incompressible_neo_hookean);
+  Membrane membrane(sheet.flat_mm, sheet.F, 1, m);
+  const auto pull = [&](double l1, double l2) {
+    Positions x = Positions::Zero(sheet.flat_mm.rows(), 3), force = x;
+    x.col(0) = l1 * sheet.flat_mm.col(0);
+    x.col(1) = l2 * sheet.flat_mm.col(1);
+    membrane.begin_step(x, none_held(sheet));
+    membrane.add_forces(x, for_ever, 0, static_cast<int>(x.rows()), force, nullptr);
+    double sum = 0;
+    for (Eigen::Index i = 0; i < x.rows(); ++i)
+      if (sheet.flat_mm(i, 0) > 10 - 1e-9) sum -= force(i, 0);
+    return sum / 20;
+  };
+  const double l = 2;
+  CHECK_THAT(pull(l, l), WithinAbs(m.young_mpa / 3 * (l - std::pow(l, -5)), 1e-9));
+  CHECK_THAT(pull(l, 1 / std::sqrt(l)), WithinAbs(m.young_mpa / 3 * (l - std::pow(l, -2)), 1e-9));
 }
 
 TEST_CASE("Membrane.sheet_over_four_triangles_and_over_many_has_the_same_energy") {

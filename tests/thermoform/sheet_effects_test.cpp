@@ -244,7 +244,8 @@ TEST_CASE("SheetEffects.forces_are_gradients_with_heat_wedge_anisotropy_and_chil
     variation.stiffness.push_back(0.5 + 0.03 * static_cast<double>(f));
     variation.thickness.push_back(1.3 - 0.01 * static_cast<double>(f));
   }
-  for (const ElasticLaw law : {ElasticLaw::st_venant_kirchhoff, ElasticLaw::stable_neo_hookean}) {
+  for (const ElasticLaw law :
+       {ElasticLaw::st_venant_kirchhoff, ElasticLaw::stable_neo_hookean, ElasticLaw::incompressible_neo_hookean}) {
     MembraneMaterial material;
     material.elastic_law = law;
     material.viscosity_s = 1e-3;

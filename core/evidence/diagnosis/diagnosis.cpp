@@ -44,9 +44,10 @@ class Diagnostician {
   }
 
  private:
+  /// Without the effects that are usually there: many points drag them as far as any cause.
   HeldOut held_out(const ParameterFit& fit) {
     return hold_out(bag_, fit, tried_.precisions(), tried_.nearest_size(model_.known_misfit()), tried_.discrepancies(),
-                    tried_.discrepancy_sensitivities(), context_);
+                    context_);
   }
 
   std::vector<Eigen::VectorXd> weights() const {
@@ -57,7 +58,7 @@ class Diagnostician {
 
   std::vector<Eigen::VectorXd> predicted(const ParameterFit& fit, const std::vector<int>& causes) const {
     return predictive_errors(model_, fit, tried_.precisions(), tried_.nearest_size(tried_.structure_left(causes)),
-                             tried_.discrepancies(), tried_.discrepancy_sensitivities());
+                             tried_.discrepancies());
   }
 
   void judge() {
@@ -359,7 +360,7 @@ const char* reading_name(Reading reading) {
 Diagnosis diagnose(SimulationBag& bag, const DiagnosisOptions& options, Context& context) {
   Stopwatch watch;
   Explanations tried(bag, options.pairs, context);
-  tried.calibrate();
+  tried.calibrate(options.start);
   const double seconds_calibration = watch.seconds();
   tried.screen();
   tried.refit();

@@ -73,6 +73,7 @@ struct Diagnosis {
 
 struct DiagnosisOptions {
   bool pairs = true;
+  Eigen::VectorXd start;  // where the calibration begins as well as at the nominal parameters; may be empty
 };
 
 /// Throws Error{could_not_solve} where the base model cannot be simulated, Error{cancelled}.

@@ -211,6 +211,19 @@ std::string failed_list(const DiagnosisReport& report) {
          rows + "</table></details>";
 }
 
+/// What the simulation was extended by before causes were looked for.
+std::string simulation_panels(const DiagnosisReport& report) {
+  std::string html;
+  for (const TriedExtension& t : report.simulation.tried)
+    if (t.taken)
+      html += "<div class=\"panel\"><span class=\"dim\">" + std::string(fault_title(FaultOf::simulation)) +
+              "</span> <b>" + xml_attribute(t.extension.label) + "</b><p>" + xml_attribute(t.extension.explanation) +
+              " Included from here on: after calibration the mean error is " + quantity(t.error_after_mm, report.unit) +
+              " instead of " + quantity(t.error_before_mm, report.unit) + ".</p><p>" +
+              xml_attribute(t.extension.remedy) + "</p></div>";
+  return html.empty() ? html : "<h2>What our simulation left out</h2>" + html;
+}
+
 /// Quantities other than places: each reading, and what both simulations have there.
 std::string other_quantity_tables(const DiagnosisReport& report) {
   constexpr Eigen::Index max_rows = 40;
@@ -273,6 +286,7 @@ std::string diagnosis_page(const DiagnosisReport& report) {
   big("Noise alone would give", with_unit(d.noise_floor), "mean distance");
   html += "</div>";
 
+  html += simulation_panels(report);
   // Of a cause that does not explain the data nothing is advised.
   if (!d.verdict.empty() && d.reading != Reading::unknown) {
     html += "<h2>What happened, and what to do</h2>";
@@ -342,7 +356,8 @@ std::string diagnosis_page(const DiagnosisReport& report) {
             quantity(parameter.value(d.extended.u[p]), parameter.unit) + "</td></tr>";
   }
   html +=
-      "</table></div><h2>How it was found</h2><div class=\"panel\"><p>" + std::to_string(d.simulations) +
+      "</table></div><h2>How it was found</h2><div class=\"panel\"><p>" +
+      std::to_string(d.simulations + report.simulation.simulations) +
       " simulations. Every cause was fitted together with the material; explanations are "
       "compared by how well they predict the data for their size, against noise and against structure that no cause makes. The errors above are for data left out of each fit: each "
       "object in 16 blocks, a quarter of them at a time.</p>";

@@ -51,6 +51,20 @@ Json structure_json(const ForwardModel& model, const std::vector<StructureTest>&
   return list;
 }
 
+Json simulation_json(const SimulationChoice& choice) {
+  Json list = Json::array();
+  for (const TriedExtension& t : choice.tried)
+    list.push_back({{"name", t.extension.name},
+                    {"label", t.extension.label},
+                    {"taken", t.taken},
+                    {"explanation", t.extension.explanation},
+                    {"remedy", t.extension.remedy},
+                    {"log_evidence_gain", t.log_evidence_gain},
+                    {"error_before_mm", t.error_before_mm},
+                    {"error_after_mm", t.error_after_mm}});
+  return list;
+}
+
 }  // namespace
 
 std::string answer_label(const DiagnosisReport& report, const Answer& answer) {
@@ -200,7 +214,8 @@ Json diagnosis_json(const DiagnosisReport& report) {
                                   {"calibrated", parameter.value(d.base.u[p])},
                                   {"extended", parameter.value(d.extended.u[p])}});
   }
-  json["simulations"] = d.simulations;
+  json["simulation"] = simulation_json(report.simulation);
+  json["simulations"] = d.simulations + report.simulation.simulations;
   json["seconds_calibration"] = d.seconds_calibration;
   json["seconds_diagnosis"] = d.seconds;
   json["notes"] = report.notes;

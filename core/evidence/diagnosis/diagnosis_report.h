@@ -3,6 +3,7 @@
 // A diagnosis as JSON, and as a page that a maker can read.
 #include "base/data/json.h"
 #include "evidence/diagnosis/diagnosis.h"
+#include "evidence/diagnosis/simulation_choice.h"
 
 namespace formwright {
 
@@ -20,6 +21,7 @@ struct DiagnosisReport {
   std::optional<HeldOutGain> unseen;
   std::vector<std::string> unseen_names, notes;
   std::string unit = "mm";
+  SimulationChoice simulation{};  // which was chosen before causes were looked for
 };
 
 /// One sentence: what was found.

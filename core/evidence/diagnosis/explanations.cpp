@@ -14,6 +14,7 @@ namespace formwright {
 namespace {
 
 constexpr std::size_t refitted_singles = 8, refitted_pairs = 6, pair_anchors = 4, leader_count = 4;
+constexpr double hopeless = 300;  // log evidence, of a linear model, that no fit makes up for
 constexpr FitOptions polishing_fit{8, 0.01, true};
 
 }  // namespace
@@ -35,7 +36,7 @@ void Explanations::estimate_noise_about(const Predictions& predictions) {
   misfit_.emplace(model_, precisions_);
 }
 
-void Explanations::calibrate() {
+void Explanations::calibrate(const Eigen::VectorXd& start) {
   const auto span = context_.span(0, 0.08, "Calibrating");
   auto at_nominal = [&] {
     const auto begin = context_.span(0, 0.05, "Calibrating");
@@ -47,8 +48,10 @@ void Explanations::calibrate() {
   at_nominal_ = std::move(*at_nominal);
   estimate_noise_about(at_nominal_);
   const auto rest = context_.span(0.05, 1, "Calibrating");
-  base_ = fit_parameters(bag_, *mean_distance_objective(model_, softness()), model_.base_parameters(), model_.nominal(),
-                         {}, {}, context_, "Calibrating");
+  std::vector<Eigen::VectorXd> starts{model_.nominal()};
+  if (start.size() > 0) starts.push_back(start);
+  base_ = fit_from_best(bag_, *mean_distance_objective(model_, softness()), model_.base_parameters(), starts, {}, {},
+                        context_, "Calibrating");
   estimate_noise_about(base_.predictions);
 }
 
@@ -100,6 +103,20 @@ const Hypothesis& Explanations::screened(const std::vector<int>& causes, bool un
                        [&](const Hypothesis& h) { return h.causes == causes && h.unknown_structure == unknown; });
 }
 
+Liberties Explanations::liberties(const std::vector<int>& causes) const {
+  Liberties result{discrepancies_, {}};
+  for (const int p : columns_) {
+    const ModelParameter& parameter = model_.parameters()[static_cast<std::size_t>(p)];
+    const bool named = std::any_of(causes.begin(), causes.end(), [&](int cause) {
+      const std::vector<int>& own = model_.causes()[static_cast<std::size_t>(cause)].parameters;
+      return std::find(own.begin(), own.end(), p) != own.end();
+    });
+    if (parameter.role == ParameterRole::effect && parameter.usual_sd > 0 && !named) result.parameters.push_back(p);
+  }
+  result.sensitivities = sensitivities_of(result.parameters, sensitivities_, columns_);
+  return result;
+}
+
 std::size_t Explanations::nearest_size(double structure) const {
   const std::vector<double>& sizes = misfit_->sizes();
   std::size_t best = 1;
@@ -111,8 +128,7 @@ std::size_t Explanations::nearest_size(double structure) const {
 ParameterFit Explanations::fit_from(const std::vector<int>& causes, const std::vector<Eigen::VectorXd>& starts,
                                     std::vector<Sensitivities> known, const FitOptions& options) {
   const std::vector<int> free = model_.base_and(causes);
-  const StructuredObjective objective(model_, *misfit_, nearest_size(model_.known_misfit()), discrepancies_,
-                                      discrepancy_sensitivities_);
+  const StructuredObjective objective(model_, *misfit_, nearest_size(model_.known_misfit()), liberties(causes));
   return fit_from_best(bag_, objective, free, starts, std::move(known), options, context_, fitting_stage);
 }
 
@@ -157,6 +173,7 @@ std::optional<ParameterFit> Explanations::fit_from_nominal(const std::vector<int
   }
   Hypothesis h = screened(causes, false);
   weigh(model_, about_nominal_, columns_, model_.nominal(), h);
+  if (h.log_evidence < screened_.front().log_evidence - hopeless) return {};
   const std::vector<int> free = model_.base_and(causes);
   return fit_from(causes, {model_.nominal(), towards(model_, free, model_.nominal(), h.u)},
                   sensitivities_of(free, nominal_sensitivities_, columns_), quick_fit);
@@ -179,9 +196,10 @@ void Explanations::polish(Refit& refit) {
 }
 
 void Explanations::weigh_refit(const Refit& refit) {
-  const std::vector<int> columns = joined(refit.fit.free, discrepancies_);
+  const Liberties other = liberties(refit.causes);
+  const std::vector<int> columns = joined(refit.fit.free, other.parameters);
   const GramByStructure gram = misfit_->gram(residuals(model_, refit.fit.predictions),
-                                             side_by_side(refit.fit.sensitivities, discrepancy_sensitivities_));
+                                             side_by_side(refit.fit.sensitivities, other.sensitivities));
   for (const bool unknown : {false, true}) {
     auto at = std::find_if(hypotheses_.begin(), hypotheses_.end(), [&](const Hypothesis& h) {
       return h.causes == refit.causes && h.unknown_structure == unknown;
@@ -265,10 +283,10 @@ std::vector<PairGuess> Explanations::promising_pairs() {
     const ParameterFit& fit = refit_of(h.causes).fit;
     singles.push_back({h.causes[0], fit.u, fit.predictions});
   }
-  const StructuredObjective objective(model_, *misfit_, nearest_size(model_.known_misfit()), discrepancies_,
-                                      discrepancy_sensitivities_);
-  PairSearch search = search_pairs(model_, *misfit_, objective, discrepancies_, discrepancy_sensitivities_, singles,
-                                   pair_anchors, context_, "Searching for two causes");
+  const Liberties equal{discrepancies_, discrepancy_sensitivities_};
+  const StructuredObjective objective(model_, *misfit_, nearest_size(model_.known_misfit()), equal);
+  PairSearch search =
+      search_pairs(model_, *misfit_, objective, equal, singles, pair_anchors, context_, "Searching for two causes");
   cheap_simulations_ += search.simulations;
   if (search.guesses.size() > refitted_pairs) search.guesses.resize(refitted_pairs);
   return std::move(search.guesses);

@@ -29,8 +29,9 @@ class Explanations {
       : bag_(bag), model_(bag.model()), pairs_(pairs), context_(context) {}
 
   // In this order. Each throws Error{could_not_solve, cancelled}.
-  /// Fits the base parameters alone, and finds the noise.
-  void calibrate();
+  /// Fits the base parameters alone, and finds the noise. Begins at the nominal ones or, where it is better and not
+  /// empty, at `start`.
+  void calibrate(const Eigen::VectorXd& start = {});
   /// Sensitivities to everything about the calibrated model, and what they alone say.
   void screen();
   /// Fits the likeliest causes in earnest, then pairs, then the leaders once more; fills hypotheses().
@@ -53,8 +54,10 @@ class Explanations {
   /// The same about the set-up's own material, where a cause of one sign is taken at its usual strength:
   /// what it does from there on to zero. Simulates these. Throws Error{cancelled}.
   std::vector<Sensitivities> usual_sensitivities();
-  const std::vector<int>& discrepancies() const { return discrepancies_; }
-  const std::vector<Sensitivities>& discrepancy_sensitivities() const { return discrepancy_sensitivities_; }
+  /// What may differ where `causes` and nothing else is at work.
+  Liberties liberties(const std::vector<int>& causes) const;
+  /// The discrepancy parameters alone.
+  Liberties discrepancies() const { return {discrepancies_, discrepancy_sensitivities_}; }
   /// Most probable first.
   const std::vector<Hypothesis>& hypotheses() const { return hypotheses_; }
   bool is_refitted(const std::vector<int>& causes) const;
@@ -89,6 +92,8 @@ class Explanations {
                         std::vector<Sensitivities> known, const FitOptions& options);
   /// From where the linearised model has them, with the sensitivities it was made of; or from `guess`.
   void refit_with(const std::vector<int>& causes, const PairGuess* guess = nullptr);
+  /// Those with the most log evidence first.
+  std::vector<const Refit*> likeliest_refits() const;
   /// Once more where a coarser simulation has it, unless it is out of reach or does nothing there.
   void refit_as(const Refit& coarse);
   /// Polishes the likeliest `count` explanations, what they are parts of and have as parts, larger ones first; `stage`

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a coarse simulation does not decide: its likeliest explanations, fitted once more by a finer one.
 #include <algorithm>
+#include <limits>
 
 #include "base/error.h"
 #include "evidence/diagnosis/explanations.h"
@@ -11,6 +12,7 @@ namespace {
 
 constexpr double decisive = 40;            // of log evidence: meshes move it by less
 constexpr std::size_t polished_again = 1;  // beside none
+constexpr std::size_t most_again = 5;      // explanations with causes
 
 const Hypothesis& plain_none(const std::vector<Hypothesis>& hypotheses) {
   return *std::find_if(hypotheses.begin(), hypotheses.end(),
@@ -21,12 +23,26 @@ const Hypothesis& plain_none(const std::vector<Hypothesis>& hypotheses) {
 
 bool Explanations::decided() const {
   const Hypothesis& best = hypotheses_.front();
-  if (best.causes.empty() || best.unknown_structure ||
-      structure_left(best.causes) > max_structure * model_.known_misfit())
-    return false;
+  if (best.unknown_structure || structure_left(best.causes) > max_structure * model_.known_misfit()) return false;
+  // Where nothing is left to explain, no finer sheet finds a cause of it.
+  if (best.causes.empty()) return true;
   return std::all_of(hypotheses_.begin(), hypotheses_.end(), [&](const Hypothesis& h) {
     return h.causes == best.causes || h.log_evidence < best.log_evidence - decisive;
   });
+}
+
+std::vector<const Explanations::Refit*> Explanations::likeliest_refits() const {
+  std::vector<const Refit*> list;
+  const auto evidence = [&](const Refit& r) {
+    double best = -std::numeric_limits<double>::infinity();
+    for (const Hypothesis& h : hypotheses_)
+      if (h.causes == r.causes) best = std::max(best, h.log_evidence);
+    return best;
+  };
+  for (const Refit& r : refits_) list.push_back(&r);
+  std::stable_sort(list.begin(), list.end(),
+                   [&](const Refit* a, const Refit* b) { return evidence(*a) > evidence(*b); });
+  return list;
 }
 
 void Explanations::refit_as(const Refit& coarse) {
@@ -40,8 +56,7 @@ void Explanations::refit_as(const Refit& coarse) {
   std::vector<Eigen::VectorXd> starts;
   for (const ParameterFit* candidate : candidates) starts.push_back(candidate->u);
   if (starts.empty()) return;
-  const StructuredObjective objective(model_, *misfit_, nearest_size(model_.known_misfit()), discrepancies_,
-                                      discrepancy_sensitivities_);
+  const StructuredObjective objective(model_, *misfit_, nearest_size(model_.known_misfit()), liberties(coarse.causes));
   const auto predictions = bag_.run(starts, context_, fitting_stage);
   double best_value = refit_of({}).fit.value + out_of_reach;
   const ParameterFit* best = nullptr;
@@ -101,7 +116,9 @@ void Explanations::look_again(const Explanations& coarse) {
   double best = plain_none(coarse.hypotheses_).log_evidence;
   for (const Hypothesis& h : coarse.hypotheses_) best = std::max(best, h.log_evidence);
   double done = 0;
-  for (const Refit& r : coarse.refits_) {
+  std::size_t again = 0;
+  for (const Refit* at : coarse.likeliest_refits()) {
+    const Refit& r = *at;
     const auto fit = context_.span(0.3 + 0.4 * done / static_cast<double>(coarse.refits_.size()),
                                    0.3 + 0.4 * (done + 1) / static_cast<double>(coarse.refits_.size()), looking);
     ++done;
@@ -109,7 +126,7 @@ void Explanations::look_again(const Explanations& coarse) {
     const bool near = std::any_of(coarse.hypotheses_.begin(), coarse.hypotheses_.end(), [&](const Hypothesis& h) {
       return h.causes == r.causes && h.log_evidence > best - out_of_reach;
     });
-    if (near) refit_as(r);
+    if (near && again++ < most_again) refit_as(r);
   }
   normalise(hypotheses_);
   double polished = 0;

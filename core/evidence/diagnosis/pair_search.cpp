@@ -21,15 +21,13 @@ bool one_sided(const ForwardModel& model, int cause) {
 class Neighbourhood {
  public:
   Neighbourhood(const ForwardModel& cheap, Predictions correction, const MisfitOfAll& misfit,
-                const FitObjective& objective, const std::vector<int>& discrepancies,
-                const std::vector<Sensitivities>& discrepancy_sensitivities, const std::vector<FittedSingle>& singles,
+                const FitObjective& objective, const Liberties& discrepancies, const std::vector<FittedSingle>& singles,
                 const FittedSingle& anchor)
       : model_(cheap, std::move(correction)),
         bag_(model_),
         misfit_(misfit),
         objective_(objective),
         discrepancies_(discrepancies),
-        discrepancy_sensitivities_(discrepancy_sensitivities),
         singles_(singles),
         anchor_(anchor) {}
 
@@ -38,13 +36,13 @@ class Neighbourhood {
     for (std::size_t p = 0; p < model_.parameters().size(); ++p)
       if (model_.parameters()[p].role != ParameterRole::discrepancy) columns_.push_back(static_cast<int>(p));
     sensitivities_ = sensitivities_at(bag_, anchor_.u, anchor_.predictions, columns_, context, stage);
-    const GramByStructure gram =
-        misfit_.gram(residuals(model_, anchor_.predictions), side_by_side(sensitivities_, discrepancy_sensitivities_));
+    const GramByStructure gram = misfit_.gram(residuals(model_, anchor_.predictions),
+                                              side_by_side(sensitivities_, discrepancies_.sensitivities));
     for (Hypothesis& h : all_hypotheses(model_, true)) {
       if (h.unknown_structure || h.causes.size() != 2 ||
           std::find(h.causes.begin(), h.causes.end(), anchor_.cause) == h.causes.end())
         continue;
-      weigh(model_, gram, joined(columns_, discrepancies_), anchor_.u, h);
+      weigh(model_, gram, joined(columns_, discrepancies_.parameters), anchor_.u, h);
       linear_.push_back(std::move(h));
     }
     std::stable_sort(linear_.begin(), linear_.end(),
@@ -76,9 +74,10 @@ class Neighbourhood {
     ParameterFit fit = fit_from_best(bag_, objective_, free, starts, sensitivities_of(free, sensitivities_, columns_),
                                      quick_fit, context, stage);
     Hypothesis h = linear;
-    weigh(model_,
-          misfit_.gram(residuals(model_, fit.predictions), side_by_side(fit.sensitivities, discrepancy_sensitivities_)),
-          joined(free, discrepancies_), fit.u, h);
+    weigh(
+        model_,
+        misfit_.gram(residuals(model_, fit.predictions), side_by_side(fit.sensitivities, discrepancies_.sensitivities)),
+        joined(free, discrepancies_.parameters), fit.u, h);
     return {linear.causes, h.log_evidence, std::move(fit.u), std::move(fit.sensitivities)};
   }
 
@@ -90,8 +89,7 @@ class Neighbourhood {
   SimulationBag bag_;
   const MisfitOfAll& misfit_;
   const FitObjective& objective_;
-  const std::vector<int>& discrepancies_;
-  const std::vector<Sensitivities>& discrepancy_sensitivities_;
+  const Liberties& discrepancies_;
   const std::vector<FittedSingle>& singles_;
   const FittedSingle& anchor_;
   std::vector<int> columns_;
@@ -102,10 +100,8 @@ class Neighbourhood {
 }  // namespace
 
 PairSearch search_pairs(const ForwardModel& model, const MisfitOfAll& misfit, const FitObjective& objective,
-                        const std::vector<int>& discrepancies,
-                        const std::vector<Sensitivities>& discrepancy_sensitivities,
-                        const std::vector<FittedSingle>& singles, std::size_t anchors, Context& context,
-                        const std::string& stage) {
+                        const Liberties& discrepancies, const std::vector<FittedSingle>& singles, std::size_t anchors,
+                        Context& context, const std::string& stage) {
   const ForwardModel& cheap = model.cheaper() != nullptr ? *model.cheaper() : model;
   PairSearch found;
   SimulationBag cheap_bag(cheap);
@@ -117,8 +113,7 @@ PairSearch search_pairs(const ForwardModel& model, const MisfitOfAll& misfit, co
     const auto at_anchor = cheap_bag.run(singles[a].u, context, stage);
     if (!at_anchor) continue;
     for (std::size_t object = 0; object < correction.size(); ++object) correction[object] -= (*at_anchor)[object];
-    Neighbourhood near(cheap, std::move(correction), misfit, objective, discrepancies, discrepancy_sensitivities,
-                       singles, singles[a]);
+    Neighbourhood near(cheap, std::move(correction), misfit, objective, discrepancies, singles, singles[a]);
     try {
       const auto part = context.span(0, 0.3, stage);
       near.linearise(context, stage);

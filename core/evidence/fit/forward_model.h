@@ -26,12 +26,15 @@ struct ModelParameter {
   double nominal = 0, low = 0, high = 0;  // values
   bool logarithmic = false;
   double prior_sd = 1;  // of u: how far from the nominal value it may well be
+  double usual_sd = 0;  // of an effect: how much of it there may be where nothing is wrong; 0: none
   double probe = 0.1;   // a step in u that moves predictions visibly, and still about linearly
 
   double value(double u) const;
   double coordinate(double value) const;
   double low_u() const { return coordinate(low); }
   double high_u() const { return coordinate(high); }
+  /// Standard deviation where no cause that it belongs to is at work: 0 where it has no say then.
+  double sd_without_cause() const { return role == ParameterRole::effect ? usual_sd : prior_sd; }
   bool one_sided() const { return role != ParameterRole::base && low >= nominal; }
 };
 
@@ -79,6 +82,19 @@ struct Measurement {
   bool is_place() const { return places_index < 0; }
 };
 
+class ForwardModel;
+
+/// Something that the simulation leaves out and can be told to do. It is a fault of ours, not of a machine: where data
+/// ask for it, causes are looked for with it.
+struct SimulationExtension {
+  std::string name, label;
+  std::string explanation;  // what the simulation leaves out, in a sentence
+  std::string remedy;       // which setting does it, and what it costs, in a sentence
+  /// With it: the same objects, and the same parameters and causes in the same places; what it brings to fit is a base
+  /// parameter of this one and of no cause in the other.
+  const ForwardModel* model = nullptr;
+};
+
 class ForwardModel {
  public:
   virtual ~ForwardModel() = default;
@@ -103,6 +119,8 @@ class ForwardModel {
   virtual const ForwardModel* cheaper() const { return nullptr; }
   /// The same, simulated more finely, for what this one does not decide; null where there is no such model.
   virtual const ForwardModel* finer() const { return nullptr; }
+  /// What it leaves out and could do. The models live as long as this one.
+  virtual std::vector<SimulationExtension> extensions() const { return {}; }
   /// What happened, in a sentence, where `cause` has these values of its parameters; empty where the model has no words
   /// for it.
   virtual std::string in_words(int /*cause*/, const std::vector<double>& /*values*/) const { return {}; }

@@ -150,14 +150,9 @@ void take_fold(const ForwardModel& model, const std::vector<Eigen::VectorXd>& ow
 
 std::vector<Eigen::VectorXd> predictive_errors(const ForwardModel& model, const ParameterFit& fit,
                                                const std::vector<Precisions>& precisions, std::size_t structure,
-                                               const std::vector<int>& discrepancy_parameters,
-                                               const std::vector<Sensitivities>& discrepancies) {
-  std::vector<int> columns = fit.free;
-  columns.insert(columns.end(), discrepancy_parameters.begin(), discrepancy_parameters.end());
-  std::vector<Sensitivities> sensitivities = fit.sensitivities;
-  for (std::size_t object = 0; object < sensitivities.size(); ++object)
-    sensitivities[object].insert(sensitivities[object].end(), discrepancies[object].begin(),
-                                 discrepancies[object].end());
+                                               const Liberties& liberties) {
+  const std::vector<int> columns = joined(fit.free, liberties.parameters);
+  const std::vector<Sensitivities> sensitivities = side_by_side(fit.sensitivities, liberties.sensitivities);
   const Predictions left = residuals(model, fit.predictions);
   const auto k = static_cast<Eigen::Index>(columns.size());
   std::vector<Eigen::VectorXd> errors = weighed_errors(left, precisions);
@@ -170,7 +165,9 @@ std::vector<Eigen::VectorXd> predictive_errors(const ForwardModel& model, const 
     Eigen::VectorXd b = gram.col(0).tail(k);
     for (Eigen::Index a = 0; a < k; ++a) {
       const int p = columns[static_cast<std::size_t>(a)];
-      const double precision = std::pow(model.parameters()[static_cast<std::size_t>(p)].prior_sd, -2);
+      const ModelParameter& parameter = model.parameters()[static_cast<std::size_t>(p)];
+      const bool fitted = static_cast<std::size_t>(a) < fit.free.size();
+      const double precision = std::pow(fitted ? parameter.prior_sd : parameter.sd_without_cause(), -2);
       A(a, a) += precision;
       b[a] -= precision * fit.u[p];
     }
@@ -186,8 +183,7 @@ std::vector<Eigen::VectorXd> predictive_errors(const ForwardModel& model, const 
 }
 
 HeldOut hold_out(SimulationBag& bag, const ParameterFit& fit, const std::vector<Precisions>& precisions,
-                 std::size_t structure, const std::vector<int>& discrepancy_parameters,
-                 const std::vector<Sensitivities>& discrepancies, Context& context) {
+                 std::size_t structure, const Liberties& liberties, Context& context) {
   const ForwardModel& model = bag.model();
   const Predictions at_fit = residuals(model, fit.predictions);
   const auto k = static_cast<Eigen::Index>(fit.free.size());
@@ -201,8 +197,7 @@ HeldOut hold_out(SimulationBag& bag, const ParameterFit& fit, const std::vector<
   const auto without = [&](int left_out) {
     Fold fold;
     fold.misfit = std::make_unique<MisfitOfAll>(model, without_fold(model, precisions, left_out));
-    fold.objective =
-        std::make_unique<StructuredObjective>(model, *fold.misfit, structure, discrepancy_parameters, discrepancies);
+    fold.objective = std::make_unique<StructuredObjective>(model, *fold.misfit, structure, liberties);
     fold.value = fold.objective->value(at_fit, fit.u);
     Eigen::VectorXd g, low(k), high(k);
     Eigen::MatrixXd H;

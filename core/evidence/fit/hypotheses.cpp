@@ -23,16 +23,21 @@ double log_sum_exp(const std::vector<double>& values) {
 
 double normal_cdf(double x) { return 0.5 * std::erfc(-x / std::sqrt(2.0)); }
 
+/// A parameter of one of these causes.
+bool is_of(const ForwardModel& model, int parameter, const std::vector<int>& causes) {
+  return std::any_of(causes.begin(), causes.end(), [&](int cause) {
+    const std::vector<int>& own = model.causes()[static_cast<std::size_t>(cause)].parameters;
+    return std::find(own.begin(), own.end(), parameter) != own.end();
+  });
+}
+
+/// Of `columns`, which have a say where `causes` are at work.
 std::vector<int> indices_of(const ForwardModel& model, const std::vector<int>& columns,
                             const std::vector<int>& causes) {
   std::vector<int> chosen;
   for (std::size_t c = 0; c < columns.size(); ++c) {
-    const bool always = model.parameters()[static_cast<std::size_t>(columns[c])].role != ParameterRole::effect;
-    const bool named = std::any_of(causes.begin(), causes.end(), [&](int cause) {
-      const std::vector<int>& own = model.causes()[static_cast<std::size_t>(cause)].parameters;
-      return std::find(own.begin(), own.end(), columns[c]) != own.end();
-    });
-    if (always || named) chosen.push_back(static_cast<int>(c));
+    const bool always = model.parameters()[static_cast<std::size_t>(columns[c])].sd_without_cause() > 0;
+    if (always || is_of(model, columns[c], causes)) chosen.push_back(static_cast<int>(c));
   }
   return chosen;
 }
@@ -44,14 +49,15 @@ struct Weighed {
 
 /// Marginal likelihood at one size of structure, and the most probable step.
 Weighed weigh_at(const ForwardModel& model, const Eigen::MatrixXd& gram, double log_determinant,
-                 const std::vector<int>& columns, const std::vector<int>& chosen, const Eigen::VectorXd& u0) {
+                 const std::vector<int>& columns, const std::vector<int>& chosen, const std::vector<int>& causes,
+                 const Eigen::VectorXd& u0) {
   const auto k = static_cast<Eigen::Index>(chosen.size());
   Eigen::MatrixXd A(k, k);
   Eigen::VectorXd b(k), precision(k), offset(k);
   for (Eigen::Index i = 0; i < k; ++i) {
     const int column = chosen[static_cast<std::size_t>(i)], p = columns[static_cast<std::size_t>(column)];
     const ModelParameter& parameter = model.parameters()[static_cast<std::size_t>(p)];
-    precision[i] = 1 / (parameter.prior_sd * parameter.prior_sd);
+    precision[i] = std::pow(is_of(model, p, causes) ? parameter.prior_sd : parameter.sd_without_cause(), -2);
     offset[i] = u0[p];
     b[i] = gram(1 + column, 0) - precision[i] * offset[i];
     for (Eigen::Index j = 0; j < k; ++j) A(i, j) = gram(1 + column, 1 + chosen[static_cast<std::size_t>(j)]);
@@ -65,7 +71,9 @@ Weighed weigh_at(const ForwardModel& model, const Eigen::MatrixXd& gram, double 
   for (Eigen::Index i = 0; i < k; ++i) {
     const ModelParameter& parameter = model.parameters()[static_cast<std::size_t>(
         columns[static_cast<std::size_t>(chosen[static_cast<std::size_t>(i)])])];
-    if (!parameter.one_sided() || parameter.role != ParameterRole::effect) continue;
+    if (!parameter.one_sided() ||
+        !is_of(model, columns[static_cast<std::size_t>(chosen[static_cast<std::size_t>(i)])], causes))
+      continue;
     log_share += std::log(std::max(1e-30, 2 * normal_cdf((offset[i] + result.step[i]) / std::sqrt(covariance(i, i)))));
   }
   const double quadratic = gram(0, 0) + offset.cwiseProduct(precision).dot(offset) - b.dot(result.step);
@@ -95,7 +103,7 @@ void weigh(const ForwardModel& model, const GramByStructure& gram, const std::ve
       log_prior = multiple >= unknown_from ? 0 : -std::numeric_limits<double>::infinity();
     else log_prior = -0.5 * multiple * multiple;
     priors.push_back(log_prior);
-    weighed.push_back(weigh_at(model, gram.gram[t], gram.log_determinant[t], columns, chosen, u0));
+    weighed.push_back(weigh_at(model, gram.gram[t], gram.log_determinant[t], columns, chosen, hypothesis.causes, u0));
     terms.push_back(log_prior + weighed.back().log_evidence);
   }
   hypothesis.log_evidence = log_sum_exp(terms) - log_sum_exp(priors);
@@ -107,7 +115,10 @@ void weigh(const ForwardModel& model, const GramByStructure& gram, const std::ve
   }
   hypothesis.u = u0;
   for (std::size_t i = 0; i < chosen.size(); ++i)
-    hypothesis.u[columns[static_cast<std::size_t>(chosen[i])]] += weighed[best].step[static_cast<Eigen::Index>(i)];
+    if (const int p = columns[static_cast<std::size_t>(chosen[i])];
+        model.parameters()[static_cast<std::size_t>(p)].role != ParameterRole::effect ||
+        is_of(model, p, hypothesis.causes))
+      hypothesis.u[columns[static_cast<std::size_t>(chosen[i])]] += weighed[best].step[static_cast<Eigen::Index>(i)];
   hypothesis.u = within_ranges(model, hypothesis.u);
 }
 
@@ -145,12 +156,29 @@ void normalise(std::vector<Hypothesis>& hypotheses) {
 
 namespace {
 
+/// Of `columns`, those of base and discrepancy parameters.
+std::vector<int> indices_of_no_cause(const ForwardModel& model, const std::vector<int>& columns) {
+  std::vector<int> chosen;
+  for (std::size_t c = 0; c < columns.size(); ++c)
+    if (model.parameters()[static_cast<std::size_t>(columns[c])].role != ParameterRole::effect)
+      chosen.push_back(static_cast<int>(c));
+  return chosen;
+}
+
+/// Of `columns`, those of a cause's own parameters.
+std::vector<int> indices_of_cause(const ForwardModel& model, const std::vector<int>& columns, int cause) {
+  std::vector<int> chosen;
+  for (std::size_t c = 0; c < columns.size(); ++c)
+    if (is_of(model, columns[c], {cause})) chosen.push_back(static_cast<int>(c));
+  return chosen;
+}
+
 /// Gram matrices of what causes do, less what base parameters and discrepancies can imitate as far as their priors let
 /// them.
 class Projection {
  public:
   Projection(const ForwardModel& model, const Eigen::MatrixXd& gram, const std::vector<int>& columns)
-      : model_(model), G_(gram), columns_(columns), others_(indices_of(model, columns, {})) {
+      : model_(model), G_(gram), columns_(columns), others_(indices_of_no_cause(model, columns)) {
     Eigen::MatrixXd base = block(others_, others_);
     for (std::size_t i = 0; i < others_.size(); ++i) {
       const double sd =
@@ -160,17 +188,12 @@ class Projection {
     factor_.compute(base);
   }
   Eigen::MatrixXd operator()(int cause_a, int cause_b) const {
-    const std::vector<int> a = own(cause_a), b = own(cause_b);
+    const std::vector<int> a = indices_of_cause(model_, columns_, cause_a),
+                           b = indices_of_cause(model_, columns_, cause_b);
     return block(a, b) - block(a, others_) * factor_.solve(block(others_, b));
   }
 
  private:
-  std::vector<int> own(int cause) const {
-    std::vector<int> list;
-    for (const int c : indices_of(model_, columns_, {cause}))
-      if (std::find(others_.begin(), others_.end(), c) == others_.end()) list.push_back(c);
-    return list;
-  }
   Eigen::MatrixXd block(const std::vector<int>& rows, const std::vector<int>& cols) const {
     Eigen::MatrixXd M(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(cols.size()));
     for (Eigen::Index i = 0; i < M.rows(); ++i)
@@ -205,13 +228,10 @@ double similarity(const ForwardModel& model, const GramByStructure& gram, std::s
 
 double min_visible_strength(const ForwardModel& model, const GramByStructure& gram, std::size_t structure,
                             const std::vector<int>& columns, int cause) {
-  constexpr double log_evidence = 8;  // half the square of the strength over its standard deviation: four of them
+  constexpr double deviations = 4;
   const Eigen::MatrixXd& G = gram.gram[structure];
   const auto k = static_cast<Eigen::Index>(columns.size());
-  const std::vector<int> others = indices_of(model, columns, {});
-  std::vector<int> own;
-  for (const int c : indices_of(model, columns, {cause}))
-    if (std::find(others.begin(), others.end(), c) == others.end()) own.push_back(c);
+  const std::vector<int> others = indices_of_no_cause(model, columns), own = indices_of_cause(model, columns, cause);
   Eigen::VectorXd precision(static_cast<Eigen::Index>(others.size()));
   for (std::size_t i = 0; i < others.size(); ++i)
     precision[static_cast<Eigen::Index>(i)] = std::pow(
@@ -238,7 +258,11 @@ double min_visible_strength(const ForwardModel& model, const GramByStructure& gr
                                  X.transpose() * (block(others, 0, others, 1) * Y + precision.asDiagonal() * Y);
   const double weakest =
       Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(0.5 * (shared + shared.transpose())).eigenvalues().minCoeff();
-  return weakest > 0 ? std::sqrt(2 * log_evidence / weakest) : std::numeric_limits<double>::infinity();
+  if (!(weakest > 0)) return std::numeric_limits<double>::infinity();
+  double usual = 0;
+  for (const int p : model.causes()[static_cast<std::size_t>(cause)].parameters)
+    usual = std::max(usual, model.parameters()[static_cast<std::size_t>(p)].usual_sd);
+  return deviations * std::sqrt(1 / weakest + usual * usual);
 }
 
 }  // namespace formwright

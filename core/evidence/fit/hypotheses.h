@@ -27,8 +27,8 @@ struct Hypothesis {
 std::vector<double> structure_sizes(const ForwardModel& model);
 
 /// Sums over structure sizes. `columns`: which parameters the sensitivities in `gram` belong to, in order; `u0`: where
-/// they and the residual were taken. Parameters that are in `columns` but neither base, discrepancy nor of the causes
-/// stay at u0.
+/// they and the residual were taken. Effects that are in `columns` but not of the causes have
+/// ModelParameter::usual_sd, and stay at u0 where that is 0.
 void weigh(const ForwardModel& model, const GramByStructure& gram, const std::vector<int>& columns,
            const Eigen::VectorXd& u0, Hypothesis& hypothesis);
 

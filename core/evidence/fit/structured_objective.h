@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 // What a diagnosis makes small: misfit against noise and structure (structured_misfit.h), with the priors, and with the
-// discrepancy parameters integrated out.
+// liberties of the model integrated out.
 #include "evidence/fit/noise_model.h"
 #include "evidence/fit/parameter_fit.h"
 #include "evidence/fit/structured_misfit.h"
@@ -32,31 +32,31 @@ std::vector<std::vector<Eigen::MatrixXd>> movements_of(const ForwardModel& model
 std::vector<Precisions> precisions_of(const ForwardModel& model, const std::vector<Eigen::VectorXd>& weights,
                                       const std::vector<std::vector<Eigen::MatrixXd>>& movements);
 
-/// `liberties`: sensitivities to the discrepancy parameters, `structure`: index into MisfitOfAll::sizes(). Everything
-/// must outlive it.
+/// What data may differ by though nothing that is fitted is at work: the discrepancy parameters, and effects as small
+/// as they usually are. They are integrated out, with ModelParameter::sd_without_cause().
+struct Liberties {
+  std::vector<int> parameters;
+  std::vector<Sensitivities> sensitivities;  // each object
+};
+
+/// `structure`: index into MisfitOfAll::sizes(). Model and misfit must outlive it.
 class StructuredObjective : public FitObjective {
  public:
-  StructuredObjective(const ForwardModel& model, const MisfitOfAll& misfit, std::size_t structure,
-                      std::vector<int> discrepancy_parameters, const std::vector<Sensitivities>& discrepancies)
-      : model_(model),
-        misfit_(misfit),
-        structure_(structure),
-        discrepancy_parameters_(std::move(discrepancy_parameters)),
-        discrepancies_(discrepancies) {}
+  StructuredObjective(const ForwardModel& model, const MisfitOfAll& misfit, std::size_t structure, Liberties liberties)
+      : model_(model), misfit_(misfit), structure_(structure), liberties_(std::move(liberties)) {}
   double value(const Predictions& residuals, const Eigen::VectorXd& u) const override;
   void quadratic(const Predictions& residuals, const std::vector<Sensitivities>& sensitivities,
                  const std::vector<int>& free, const Eigen::VectorXd& u, Eigen::VectorXd& g,
                  Eigen::MatrixXd& H) const override;
 
  private:
-  /// The Gram matrix without what the discrepancy parameters explain.
+  /// The Gram matrix without what the liberties explain.
   Eigen::MatrixXd reduced(const Predictions& residuals, const std::vector<Sensitivities>& sensitivities) const;
 
   const ForwardModel& model_;
   const MisfitOfAll& misfit_;
   std::size_t structure_;
-  std::vector<int> discrepancy_parameters_;
-  const std::vector<Sensitivities>& discrepancies_;
+  Liberties liberties_;
 };
 
 }  // namespace formwright

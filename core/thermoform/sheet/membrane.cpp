@@ -78,11 +78,15 @@ void Membrane::begin_step(const Positions& x, const HeldVertices& held) {
     const Double4 thickness = g.volume / area;
     // With h = V/A alone a bubble has a largest pressure, beyond which it would grow until it is nothing; plastic that
     // has been drawn out that far hardens. So the stiffness stays that of the thickness at which the flow stops.
-    g.weight = rest_area * maximum(thickness, Double4{} + material_.flow_stop_mm) * (g.stiffness * g.chill);
+    // The incompressible law counts the volume itself: its thickness at rest is what it has thinned from.
+    const bool counts_volume = material_.elastic_law == ElasticLaw::incompressible_neo_hookean;
+    const auto weight_of = [&](const Double4& rest) {
+      return rest * maximum(counts_volume ? Double4(g.volume / rest) : thickness, Double4{} + material_.flow_stop_mm);
+    };
+    g.weight = weight_of(rest_area) * (g.stiffness * g.chill);
     // The network's state without stress is the flat sheet, and a chill does not stiffen it.
     if (material_.network_share > 0)
-      g.network_weight = 0.5 / (g.flat00 * g.flat11 - g.flat01 * g.flat10) *
-                         maximum(thickness, Double4{} + material_.flow_stop_mm) * g.stiffness;
+      g.network_weight = weight_of(0.5 / (g.flat00 * g.flat11 - g.flat01 * g.flat10)) * g.stiffness;
     g.creep = material_.creep_per_s / g.chill;
     if (material_.yield_rule == YieldRule::total_strain) {
       deform(g, x, true, total);
@@ -267,12 +271,15 @@ void Membrane::add_any(std::size_t group, const Positions& x, double dt_s, int b
                        BlockMatrix* matrix) const {
   const Group& g = groups_[group];
   if (g.max_vertex < begin || g.min_vertex >= end) return;
-  if (material_.elastic_law == ElasticLaw::st_venant_kirchhoff) {
-    if (matrix) add_group<ElasticLaw::st_venant_kirchhoff, true>(g, x, dt_s, begin, end, force, matrix);
-    else add_group<ElasticLaw::st_venant_kirchhoff, false>(g, x, dt_s, begin, end, force, nullptr);
-  } else {
-    if (matrix) add_group<ElasticLaw::stable_neo_hookean, true>(g, x, dt_s, begin, end, force, matrix);
-    else add_group<ElasticLaw::stable_neo_hookean, false>(g, x, dt_s, begin, end, force, nullptr);
+  const auto add = [&]<ElasticLaw law>() {
+    if (matrix) add_group<law, true>(g, x, dt_s, begin, end, force, matrix);
+    else add_group<law, false>(g, x, dt_s, begin, end, force, nullptr);
+  };
+  switch (material_.elastic_law) {
+    case ElasticLaw::st_venant_kirchhoff: return add.template operator()<ElasticLaw::st_venant_kirchhoff>();
+    case ElasticLaw::stable_neo_hookean: return add.template operator()<ElasticLaw::stable_neo_hookean>();
+    case ElasticLaw::incompressible_neo_hookean:
+      return add.template operator()<ElasticLaw::incompressible_neo_hookean>();
   }
 }
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 // The sheet resists stretching, flows and thins: thesis 4.2.2. Discrete viscous sheets (Batty, Uribe, Audoly,
-// Grinspun 2012) with additive plasticity on the Green strain (eq. 4.1 and what follows it). Beside what flows there
-// may be a network of chains that never does: Green and Tobolsky's lasting part of a melt (1946).
+// Grinspun 2012) with additive plasticity on the Green strain (eq. 4.1 and what follows it). With the incompressible
+// law the elastic energy is that of rubber [Tre75], by volume. Beside what flows there may be a network of chains that
+// never does: Green and Tobolsky's lasting part of a melt (1946).
 //
 // Units inside the simulation: mm, N and s; stress in MPa = N/mm^2, energy in mJ, mass in tonnes (N s^2/mm).
 #include <span>

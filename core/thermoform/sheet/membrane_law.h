@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// The two elastic laws in the plane, four triangles at a time: stress, stiffness and energy of a strain.
+// The elastic laws in the plane, four triangles at a time: stress, stiffness and energy of a strain.
 #include "thermoform/sheet/membrane_group.h"
 
 namespace formwright::membrane_detail {
@@ -15,6 +15,9 @@ inline Lame lame(double young_mpa, double poisson_ratio) {
   const double mu = young_mpa / (2 * (1 + poisson_ratio));
   return {mu, young_mpa * poisson_ratio / (1 - poisson_ratio * poisson_ratio) + mu};
 }
+
+/// Of det C, below which the incompressible law goes on as it is there: its stress has no bound.
+constexpr double min_squared_area_ratio = 1e-2;
 
 /// Second Piola-Kirchhoff stress and its tangent over (e00, e11, 2 e01), MPa.
 struct Response {
@@ -35,6 +38,22 @@ inline void respond(const MembraneMaterial& material, double young_mpa, const St
     r.s00 = kept * (r.d00 * e.e00 + r.d01 * e.e11);
     r.s11 = kept * (r.d01 * e.e00 + r.d11 * e.e11);
     r.s01 = kept * (2.0 * r.d22 * e.e01);
+  } else if constexpr (law == ElasticLaw::incompressible_neo_hookean) {
+    // S = mu (1 - C^-1 / det C), the stress across the sheet being zero; the tangent is positive everywhere.
+    const double mu = young_mpa / 3;
+    const Double4 c00 = 1.0 + 2.0 * kept * e.e00, c01 = 2.0 * kept * e.e01, c11 = 1.0 + 2.0 * kept * e.e11;
+    const Double4 determinant = maximum(c00 * c11 - c01 * c01, Double4{} + min_squared_area_ratio);
+    const Double4 i00 = c11 / determinant, i01 = -c01 / determinant, i11 = c00 / determinant;
+    const Double4 p = mu / determinant, twice = 2.0 * p;
+    r.s00 = mu - p * i00;
+    r.s01 = -p * i01;
+    r.s11 = mu - p * i11;
+    r.d00 = 2.0 * twice * i00 * i00;
+    r.d01 = twice * (i00 * i11 + i01 * i01);
+    r.d02 = 2.0 * twice * i00 * i01;
+    r.d11 = 2.0 * twice * i11 * i11;
+    r.d12 = 2.0 * twice * i11 * i01;
+    r.d22 = twice * (i01 * i01 + 0.5 * (i00 * i11 + i01 * i01));
   } else {
     const Lame l = lame(young_mpa, nu);
     const Double4 c00 = 1.0 + 2.0 * kept * e.e00, c01 = 2.0 * kept * e.e01, c11 = 1.0 + 2.0 * kept * e.e11;
@@ -65,8 +84,12 @@ inline Double4 stretching_density(const MembraneMaterial& material, double young
 /// Energy per volume (mJ/mm^3) of the material's law.
 inline Double4 energy_density(const MembraneMaterial& material, double young_mpa, const Strain& e) {
   if (material.elastic_law == ElasticLaw::st_venant_kirchhoff) return stretching_density(material, young_mpa, e);
-  const Lame l = lame(young_mpa, material.poisson_ratio);
   const Double4 c00 = 1.0 + 2.0 * e.e00, c01 = 2.0 * e.e01, c11 = 1.0 + 2.0 * e.e11;
+  if (material.elastic_law == ElasticLaw::incompressible_neo_hookean) {
+    const Double4 determinant = maximum(c00 * c11 - c01 * c01, Double4{} + min_squared_area_ratio);
+    return young_mpa / 6 * (c00 + c11 + 1.0 / determinant - 3.0);
+  }
+  const Lame l = lame(young_mpa, material.poisson_ratio);
   const Double4 J = root(maximum(c00 * c11 - c01 * c01, Double4{} + 1e-9));
   return 0.5 * l.mu * (c00 + c11 - 2.0) - l.mu * (J - 1.0) + 0.5 * l.lambda * (J - 1.0) * (J - 1.0);
 }

@@ -10,11 +10,13 @@
 
 namespace formwright {
 
-enum class ElasticLaw { st_venant_kirchhoff, stable_neo_hookean };
+enum class ElasticLaw { st_venant_kirchhoff, stable_neo_hookean, incompressible_neo_hookean };
 template <>
 struct EnumNames<ElasticLaw> {
-  static constexpr std::array<std::string_view, 2> names{"st_venant_kirchhoff", "stable_neo_hookean"};
-  static constexpr std::array<std::string_view, 2> labels{"St. Venant-Kirchhoff", "Stable neo-Hookean"};
+  static constexpr std::array<std::string_view, 3> names{"st_venant_kirchhoff", "stable_neo_hookean",
+                                                         "incompressible_neo_hookean"};
+  static constexpr std::array<std::string_view, 3> labels{"St. Venant-Kirchhoff", "Stable neo-Hookean",
+                                                          "Incompressible neo-Hookean"};
 };
 
 enum class YieldRule { elastic_excess, total_strain };
@@ -152,7 +154,7 @@ struct ThermoformOptions : SheetEffects {
               .advanced(),
           parameter(
               "elastic_law", &ThermoformOptions::elastic_law, "Elastic law",
-              "Formula for the elastic force. St. Venant-Kirchhoff is the standard one here; stable neo-Hookean does not soften when the sheet is compressed. Results usually differ by about 0.1 mm.")
+              "Formula for the elastic force. St. Venant-Kirchhoff is the standard one here; stable neo-Hookean does not soften when the sheet is compressed; incompressible neo-Hookean keeps the plastic's volume, as rubber does, so that a stretch in two directions takes more force than in one.")
               .group("Material")
               .advanced(),
           parameter(

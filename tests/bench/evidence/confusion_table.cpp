@@ -18,6 +18,7 @@
 
 #include "evidence/calibration.h"
 #include "evidence/diagnosis/diagnosis.h"
+#include "evidence/diagnosis/simulation_choice.h"
 #include "evidence/diagnosis/unseen.h"
 #include "evidence/nearest_sensitivity.h"
 #include "evidence/virtual_lab.h"
@@ -28,7 +29,7 @@ using namespace formwright;
 using namespace formwright::virtual_lab;
 
 /// Raised whenever the diagnosis comes to answer differently: run_confusion_table.py asks older lines again.
-constexpr int engine = 11;
+constexpr int engine = 12;
 
 struct Arguments {
   unsigned seed = 1;
@@ -67,16 +68,19 @@ Json one_case(const std::vector<std::string>& hidden, double level, double sigma
     ThermoformModelOptions well;
     well.fit_mould_place = true;
     well.triangles = 2500;
-    const ThermoformModel before(
-        {make_object(static_cast<Mould>((static_cast<int>(mould) + 2) % 4), world, {}, observation, random)}, well);
-    SimulationBag before_bag(before);
     Context calibration;
+    const ThermoformModel usual_before(
+        {make_object(static_cast<Mould>((static_cast<int>(mould) + 2) % 4), world, {}, observation, random)}, well);
+    const ThermoformModel& before = usual_before.extended_by(choose_simulation(usual_before, calibration).taken());
+    SimulationBag before_bag(before);
     asked.profile = before.profile_at(calibrate(before_bag, calibration).u);
     for (const char* name : {"mould_shift_x_mm", "mould_shift_y_mm"}) asked.profile.parameters.erase(name);
   }
-  ThermoformModel model({object}, asked);
-  SimulationBag bag(model);
   Context context;
+  const ThermoformModel usual({object}, asked);
+  const SimulationChoice choice = choose_simulation(usual, context);
+  const ThermoformModel& model = usual.extended_by(choice.taken());
+  SimulationBag bag(model);
   Json line;
   line["seed"] = seed;
   if (arguments.nearest) {
@@ -88,8 +92,10 @@ Json one_case(const std::vector<std::string>& hidden, double level, double sigma
   }
   DiagnosisOptions options;
   options.pairs = arguments.pairs_searched;
+  options.start = choice.u;
   const Diagnosis d = diagnose(bag, options, context);
   line["engine"] = engine;
+  line["simulation"] = choice.taken();
   line["mould"] = mould_names[static_cast<int>(mould)];
   line["hidden"] = hidden;
   line["values"] = Json::array();
@@ -176,7 +182,7 @@ Json one_case(const std::vector<std::string>& hidden, double level, double sigma
   if (arguments.unseen) {
     const auto other = static_cast<Mould>((static_cast<int>(mould) + 1) % 4);
     ThermoformModel second({make_object(other, world, effects, observation, random)}, asked);
-    const HeldOutGain gain = predict_unseen(second, model, d, context).gain;
+    const HeldOutGain gain = predict_unseen(second.extended_by(choice.taken()), model, d, context).gain;
     line["unseen_mm"] = {gain.before.mean, gain.after.mean};
   }
   return line;

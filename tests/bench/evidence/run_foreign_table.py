@@ -61,11 +61,12 @@ def diagnosed(a, seed, mould, cause, level, folder):
         truth = json.loads((item / "truth.json").read_text())
         line |= {"in_the_list": truth["in_the_list"], "strength": truth["values"], "movement_mean_mm": truth["movement_mean_mm"]}
         start = time.monotonic()
-        run([a.formwright, "evidence-diagnose", "--object", str(item), "--out", str(item / "report"), "--separate", "off", "--pairs", "on" if a.pairs else "off"])
+        run([a.formwright, "evidence-diagnose", "--object", str(item), "--out", str(item / "report"), "--separate", "off", "--pairs", "on" if a.pairs else "off", "--triangles", str(a.triangles)])
         line["seconds_diagnosing"] = round(time.monotonic() - start, 1)
         found = json.loads((item / "report" / "diagnosis.json").read_text())
         line |= {key: found[key] for key in ("verdict", "reading", "doubtful", "doubts", "error_before_mm", "error_after_mm", "noise_floor_mm", "unexplained_before_mm",
                                              "unexplained_after_mm", "simulations")}
+        line["simulation"] = [one["name"] for one in found["simulation"] if one["taken"]]
         line["first"] = [{"name": f["name"], "probability": f["probability"], "strength": f["strength"], "interval": f["interval"], "values": f["values"],
                           "min_visible_strength": f["min_visible_strength"]} for f in found["causes"][:3]]
         line["calibrated"] = {p["name"]: p["calibrated"] for p in found["parameters"]}
@@ -82,6 +83,7 @@ def main():
     parser.add_argument("--seeds", type=int, default=1, help="rounds")
     parser.add_argument("--noise", type=float, default=0.1)
     parser.add_argument("--points", type=int, default=2000)
+    parser.add_argument("--triangles", type=int, default=5000, help="of the simulated sheet")
     parser.add_argument("--folder", type=pathlib.Path, help="keeps the objects and reports here")
     parser.add_argument("--jobs", type=int, default=1, help="cases at a time")
     parser.add_argument("--pairs", action="store_true", help="also looks for two causes at once, which takes twice as long")

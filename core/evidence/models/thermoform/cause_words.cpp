@@ -87,9 +87,6 @@ std::string thermoform_cause_in_words(std::string_view cause, std::span<const do
     return "The pattern was printed about " + percent(v) + (v > 0 ? " too large." : " too small.");
   if (cause == "scan_scale")
     return "The scan is about " + percent(v) + (v > 0 ? " larger" : " smaller") + " than the object.";
-  if (cause == "lasting_network")
-    return "Our simulation leaves out that about " + percent(v) +
-           " of the hot plastic's stiffness never flows, which keeps steep walls thicker.";
   if (cause == "scan_shift") return "The scan lies about " + way(values) + " from where the object was.";
   return "";
 }

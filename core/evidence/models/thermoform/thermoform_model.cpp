@@ -49,10 +49,10 @@ Eigen::MatrixX2d in_opening(const std::vector<Reading>& readings, const Thermofo
 
 ThermoformModel::ThermoformModel(std::vector<FormedObject> objects, ThermoformModelOptions options)
     : objects_(std::move(objects)), options_(std::move(options)) {
-  Json nominal = with_profile(objects_.front().setup.parameters, options_.profile);
+  Json nominal = settings_of(objects_.front());
   const Json measurement = write_parameters(options_.profile.measurement);
   for (const auto& [name, value] : measurement.items()) nominal[name] = value;
-  declare_thermoform_parameters(nominal, options_.fit_mould_place, options_.without, parameters_, causes_);
+  declare_thermoform_parameters(nominal, options_, parameters_, causes_);
   // What a profile says of the material was measured, on a machine that was well: far more than a guess, and the only
   // thing that tells a weak vacuum from a stiff sheet.
   constexpr double known_share = 0.3;
@@ -123,9 +123,43 @@ const ForwardModel* ThermoformModel::finer() const {
   return finer_.get();
 }
 
+std::vector<SimulationExtension> ThermoformModel::extensions() const {
+  std::vector<SimulationExtension> list;
+  const Json nominal = settings_of(objects_.front());
+  for (const ThermoformExtension& extension : thermoform_extensions()) {
+    if (has_extension(extension, nominal, options_)) continue;
+    const std::scoped_lock lock(mutex_);
+    auto& model = extended_[extension.name];
+    if (!model) {
+      ThermoformModelOptions more = options_;
+      more.extensions.emplace_back(extension.name);
+      model = std::make_unique<ThermoformModel>(objects_, std::move(more));
+    }
+    list.push_back({extension.name, extension.label, extension.explanation, extension.remedy, model.get()});
+  }
+  return list;
+}
+
+const ThermoformModel& ThermoformModel::extended_by(const std::vector<std::string>& names) const {
+  const ThermoformModel* model = this;
+  for (const std::string& name : names) {
+    model->extensions();
+    model = model->extended_.at(name).get();
+  }
+  return *model;
+}
+
+Json ThermoformModel::settings_of(const FormedObject& object) const {
+  Json settings = with_profile(object.setup.parameters, options_.profile);
+  for (const ThermoformExtension& extension : thermoform_extensions())
+    if (std::find(options_.extensions.begin(), options_.extensions.end(), extension.name) != options_.extensions.end())
+      settings.update(extension.settings);
+  return settings;
+}
+
 ThermoformOptions ThermoformModel::simulation_options(int object, const Eigen::VectorXd& u) const {
   const FormedObject& formed_object = objects_[static_cast<std::size_t>(object)];
-  Json values = with_profile(formed_object.setup.parameters, options_.profile);
+  Json values = settings_of(formed_object);
   const MeasurementEffects none;
   const Json measurement = write_parameters(none);
   values["triangles"] = options_.triangles;
@@ -252,13 +286,12 @@ std::string ThermoformModel::in_words(int cause, const std::vector<double>& valu
 MachineProfile ThermoformModel::profile_at(const Eigen::VectorXd& u) const {
   MachineProfile profile = options_.profile;
   // The law and the ramp that the numbers were fitted with: with others they mean another sheet.
-  const Json first = with_profile(objects_.front().setup.parameters, options_.profile);
+  const Json first = settings_of(objects_.front());
   for (const std::string& name : names_of_material())
     if (first.contains(name)) {
       profile.parameters[name] = first[name];
       for (const FormedObject& object : objects_)
-        if (const Json own = with_profile(object.setup.parameters, options_.profile);
-            !own.contains(name) || own[name] != first[name])
+        if (const Json own = settings_of(object); !own.contains(name) || own[name] != first[name])
           profile.notes.push_back("The objects' set-ups differ in " + name + ": the value of " + objects_.front().name +
                                   " was taken for all.");
     }

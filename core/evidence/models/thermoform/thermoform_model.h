@@ -17,10 +17,29 @@ namespace formwright {
 
 struct ThermoformModelOptions {
   int triangles = 5000;
-  bool fit_mould_place = false;      // as calibration does: the mould's place is a base parameter, no cause
-  MachineProfile profile;            // what is known of the machine; empty where nothing is
-  std::vector<std::string> without;  // causes that are not considered
+  bool fit_mould_place = false;         // as calibration does: the mould's place is a base parameter, no cause
+  MachineProfile profile;               // what is known of the machine; empty where nothing is
+  std::vector<std::string> without;     // causes that are not considered
+  std::vector<std::string> extensions;  // by name: what the simulation does beside what set-up and profile say
 };
+
+/// A parameter that a fit varies, with the range, where narrower than its own, and the coordinate of ModelParameter.
+struct VariedParameter {
+  const char* name;
+  bool logarithmic;
+  double low, high;
+  double prior_sd, probe;
+};
+
+/// What the simulation of a sheet can do that it usually leaves out.
+struct ThermoformExtension {
+  const char *name, *label, *explanation, *remedy;
+  const VariedParameter* parameter;  // that it brings to fit; null where it is a setting alone
+  Json settings = Json::object();    // parameters of ThermoformOptions
+};
+const std::vector<ThermoformExtension>& thermoform_extensions();
+/// Among `options`, or in what set-up and profile say (`nominal`).
+bool has_extension(const ThermoformExtension& extension, const Json& nominal, const ThermoformModelOptions& options);
 
 /// Its measurements are the places of each object in their order; then, of each object that has any, the thickness
 /// within the clamp opening and that of the rim.
@@ -41,6 +60,10 @@ class ThermoformModel : public ForwardModel {
   const ForwardModel* cheaper() const override { return cheaper_.get(); }
   /// On twice the triangles, where these are no more than most are content with.
   const ForwardModel* finer() const override;
+  std::vector<SimulationExtension> extensions() const override;
+  /// This, or what `names` make of it; each of them among the extensions of the one before.
+  const ThermoformModel& extended_by(const std::vector<std::string>& names) const;
+  const ThermoformModelOptions& options() const { return options_; }
 
   const std::vector<FormedObject>& objects() const { return objects_; }
   /// The readings of a measurement that is not of places, row by row.
@@ -59,6 +82,8 @@ class ThermoformModel : public ForwardModel {
   void add_places(const FormedObject& object);
   void add_thickness(int object, std::vector<MeasuredThickness> readings, const char* what, double misfit_share);
   SheetSimulation simulation_of(int object, const Eigen::VectorXd& u) const;
+  /// Parameters by name, as the object's set-up, the profile and the extensions have them.
+  Json settings_of(const FormedObject& object) const;
 
   std::vector<FormedObject> objects_;
   ThermoformModelOptions options_;
@@ -69,12 +94,14 @@ class ThermoformModel : public ForwardModel {
   std::unique_ptr<const ThermoformModel> cheaper_;
   mutable std::mutex mutex_;
   mutable std::unique_ptr<const ThermoformModel> finer_;
+  mutable std::map<std::string, std::unique_ptr<const ThermoformModel>> extended_;
   mutable std::vector<std::shared_ptr<const Bytes>> packed_moulds_;  // of the objects; null until a task needs them
   mutable std::map<std::string, std::shared_ptr<const FormedSheet>> sheets_;
 };
 
 /// The parameters that a diagnosis varies, base first, and the causes they belong to.
-void declare_thermoform_parameters(const Json& nominal, bool fit_mould_place, const std::vector<std::string>& without,
+/// `nominal`: what set-up and profile say.
+void declare_thermoform_parameters(const Json& nominal, const ThermoformModelOptions& options,
                                    std::vector<ModelParameter>& parameters, std::vector<Cause>& causes);
 
 /// Makes the simulation the other one that the discrepancy of this name stands for.

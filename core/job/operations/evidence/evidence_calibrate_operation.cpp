@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "evidence/diagnosis/simulation_choice.h"
 #include "job/contract/operation_options.h"
 #include "job/operations/evidence/evidence_input.h"
 #include "job/operations/evidence/evidence_operations.h"
@@ -83,8 +84,8 @@ int index_of(const ForwardModel& model, const std::string& name) {
   return -1;
 }
 
-Calibration search(SimulationBag& bag, const CalibrateOptions& o, Context& context) {
-  if (o.method == CalibrationMethod::fit) return calibrate(bag, context);
+Calibration search(SimulationBag& bag, const CalibrateOptions& o, const Eigen::VectorXd& start, Context& context) {
+  if (o.method == CalibrationMethod::fit) return calibrate(bag, context, start);
   const ForwardModel& model = bag.model();
   // The ranges of thesis 4.2.3.
   const std::vector<GridAxis> axes{{index_of(model, "young_modulus_pa"), 5e5, 5e6},
@@ -106,9 +107,18 @@ OperationResult run_evidence_calibrate(const OperationCall& call, const Calibrat
   options.triangles = o.triangles;
   options.fit_mould_place = true;
   options.profile = read_profile_input(call);
-  const ThermoformModel model(std::move(objects), options);
+  const ThermoformModel usual(std::move(objects), options);
+  SimulationChoice choice;
+  if (o.method == CalibrationMethod::fit) {
+    const auto span = call.context.span(0.01, 0.3, "Choosing the simulation");
+    choice = choose_simulation(usual, call.context);
+  }
+  const ThermoformModel& model = usual.extended_by(choice.taken());
   SimulationBag bag(model);
-  const Calibration calibration = search(bag, o, call.context);
+  const Calibration calibration = [&] {
+    const auto span = call.context.span(o.method == CalibrationMethod::fit ? 0.3 : 0.01, 1, "Calibrating");
+    return search(bag, o, choice.u, call.context);
+  }();
 
   MachineProfile profile = model.profile_at(calibration.u);
   // Where the mould stood is of these objects, not of the machine.
@@ -125,6 +135,13 @@ OperationResult run_evidence_calibrate(const OperationCall& call, const Calibrat
     parameters.push_back(std::move(entry));
   }
   if (calibration.profiles.empty()) parameters = parameter_values(model, calibration.u, ParameterRole::base);
+  for (const TriedExtension& t : choice.tried) {
+    if (!t.taken) continue;
+    const std::string sentence =
+        t.extension.label + ": the usual simulation leaves that out, this profile includes it. " + t.extension.remedy;
+    notes.push_back(sentence);
+    profile.notes.push_back(sentence);
+  }
   for (const Json& name : not_identified) {
     const std::string sentence = "These data do not tell " + name.get<std::string>() +
                                  ": its value may be anywhere in its interval, and predictions hardly change.";
@@ -152,7 +169,7 @@ OperationResult run_evidence_calibrate(const OperationCall& call, const Calibrat
   report["outliers"] = outliers;
   report["parameters"] = parameters;
   report["not_identified"] = not_identified;
-  report["simulations"] = calibration.simulations;
+  report["simulations"] = calibration.simulations + choice.simulations;
   report["seconds_calibration"] = calibration.seconds;
   report["notes"] = notes;
   Json details = report;

@@ -122,7 +122,7 @@ OperationResult run_evidence_diagnose(const OperationCall& call, const DiagnoseO
     unseen = read_formed_objects(call, "unseen");
     objects = read_formed_objects(call, "object");
   }
-  const ThermoformModel model(std::move(objects), options);
+  const ThermoformModel usual(std::move(objects), options);
   // An object that cannot be formed is refused before the fits, which take minutes.
   std::unique_ptr<const ThermoformModel> other;
   if (!unseen.empty()) {
@@ -131,19 +131,26 @@ OperationResult run_evidence_diagnose(const OperationCall& call, const DiagnoseO
     for (std::size_t i = 0; i < other->objects().size(); ++i)
       other->predict(static_cast<int>(i), other->nominal(), call.context);
   }
+  const SimulationChoice choice = [&] {
+    const auto span = call.context.span(0.02, 0.1, "Choosing the simulation");
+    return choose_simulation(usual, call.context);
+  }();
+  const ThermoformModel& model = usual.extended_by(choice.taken());
   SimulationBag bag(model);
   Diagnosis diagnosis;
   {
-    const auto span = call.context.span(other ? 0.02 : 0.01, o.separate ? 0.85 : 0.95, "Diagnosing");
+    const auto span = call.context.span(0.1, o.separate ? 0.85 : 0.95, "Diagnosing");
     DiagnosisOptions own;
     own.pairs = o.pairs;
+    own.start = choice.u;
     diagnosis = diagnose(bag, own, call.context);
   }
   DiagnosisReport report{model, diagnosis, {}, std::nullopt, {}, {}};
+  report.simulation = choice;
   if (!diagnosis.not_separable.empty()) {
     const auto span = call.context.span(0.85, 0.95, "Looking for a measurement that distinguishes them");
     std::vector<ProposedMeasurement> proposals;
-    if (o.separate) proposals = proposed_measurements(model, options);
+    if (o.separate) proposals = proposed_measurements(model, model.options());
     report.separations = separated_pairs(bag, diagnosis, proposals, call.context);
   }
   std::optional<UnseenObjects> predicted;
@@ -151,7 +158,7 @@ OperationResult run_evidence_diagnose(const OperationCall& call, const DiagnoseO
     const auto span = call.context.span(0.95, 0.99, "Predicting the validation object");
     for (const FormedObject& object : other->objects()) report.unseen_names.push_back(object.name);
     try {
-      predicted = predict_unseen(*other, model, diagnosis, call.context);
+      predicted = predict_unseen(other->extended_by(choice.taken()), model, diagnosis, call.context);
       report.unseen = predicted->gain;
     } catch (const Error& error) {
       if (error.code() != ErrorCode::could_not_solve) throw;

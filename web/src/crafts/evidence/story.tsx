@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A diagnosis in five steps: how far off, where, why, what to do, how sure.
+// A diagnosis in five steps: how far off, where, why, what to do, how sure; and what our simulation left out, where it did.
 import type { ComponentChildren } from 'preact';
 import { Button, formatNumber, withUnit } from '../../ui';
 import type { Diagnosis } from '../../shared/diagnosis/diagnosis';
-import { sureWords, whyWords } from '../../shared/diagnosis/diagnosis_words';
+import { extensionWords, sureWords, whyWords } from '../../shared/diagnosis/diagnosis_words';
 import type { EvidenceSession } from './evidence_session';
 import type { Residuals } from './pictures/residuals';
 import { minPrintPoints } from './pictures/print_picture';
@@ -25,6 +25,15 @@ export function Story({ session, diagnosis }: { session: EvidenceSession; diagno
             : `Noise alone would leave ${length(diagnosis.noiseFloor_mm)}.`}
         </Step>
         {residuals ? <Step title="Where">{whereWords(residuals)}</Step> : null}
+        {diagnosis.extensions.length > 0 ? (
+          <Step title="What our simulation left out">
+            {extensionWords(diagnosis).map((sentence) => (
+              <span key={sentence} class="story-line">
+                {sentence}
+              </span>
+            ))}
+          </Step>
+        ) : null}
         <Step title="Why">{whyWords(diagnosis)}</Step>
         <Step title="What to do">
           {todo(diagnosis).map((sentence) => (

@@ -2,7 +2,7 @@
 import { describe, expect, it } from 'vitest';
 import type { Report } from '../../jobs/contract';
 import { formatEstimate, oddsAgainstNone, percent, readDiagnosis, readingWords } from './diagnosis';
-import { sureWords, whyWords } from './diagnosis_words';
+import { extensionWords, sureWords, whyWords } from './diagnosis_words';
 
 const report: Report = {
   verdict: ['heating_gradient'],
@@ -40,6 +40,18 @@ const report: Report = {
     },
   ],
   not_separable: [{ causes: ['heating_gradient', 'thickness_wedge'], measurement: 'Turn the sheet.' }],
+  simulation: [
+    {
+      name: 'constant_volume',
+      label: 'The plastic keeps its volume',
+      taken: true,
+      explanation: 'Hot plastic thins as much as it is stretched.',
+      remedy: 'The setting elastic_law does that.',
+      error_before_mm: 0.45,
+      error_after_mm: 0.31,
+    },
+    { name: 'lasting_network', label: 'Network', taken: false, explanation: '', remedy: '' },
+  ],
   error_before_mm: 0.28,
   error_before_interval_mm: [0.2, 0.3],
   error_after_mm: 0.14,
@@ -95,6 +107,13 @@ describe('a diagnosis', () => {
     const nothing = readDiagnosis({ ...report, reading: 'none', verdict: ['none'], doubts: [] });
     expect(whyWords(nothing)).toMatch(/^Nothing to fix/);
     expect(sureWords(nothing)).toHaveLength(1);
+  });
+
+  it('says what the simulation left out and now includes', () => {
+    expect(extensionWords(readDiagnosis(report))).toEqual([
+      'Hot plastic thins as much as it is stretched. Our usual simulation leaves that out; it is included here, and the calibrated error is 0.31\u2009mm instead of 0.45\u2009mm. The setting elastic_law does that.',
+    ]);
+    expect(extensionWords(readDiagnosis({}))).toEqual([]);
   });
 
   it('says in words what looks alike and what would tell', () => {

@@ -82,6 +82,14 @@ export interface Diagnosis {
     readonly calibrated: number;
     readonly extended: number;
   }[];
+  /** What the simulation was extended by before causes were looked for. */
+  readonly extensions: readonly {
+    readonly label: string;
+    readonly explanation: string;
+    readonly remedy: string;
+    readonly before_mm: number;
+    readonly after_mm: number;
+  }[];
   readonly notes: readonly string[];
   readonly simulations: number | null;
 }
@@ -181,6 +189,15 @@ export function readDiagnosis(report: Report): Diagnosis {
       calibrated: number(parameter['calibrated']),
       extended: number(parameter['extended']),
     })),
+    extensions: list(report['simulation'])
+      .filter((one) => one['taken'] === true)
+      .map((one) => ({
+        label: text(one['label']),
+        explanation: text(one['explanation']),
+        remedy: text(one['remedy']),
+        before_mm: number(one['error_before_mm']),
+        after_mm: number(one['error_after_mm']),
+      })),
     notes: sentences(report, 'notes'),
     simulations: figure(report, 'simulations'),
   };

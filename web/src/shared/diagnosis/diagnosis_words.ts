@@ -17,6 +17,13 @@ export function whyWords(diagnosis: Diagnosis): string {
   return [...sentences, readingWords(diagnosis)].filter(Boolean).join(' ');
 }
 
+/** One sentence or two for each thing that the simulation left out and now includes. */
+export const extensionWords = ({ extensions }: Diagnosis): string[] =>
+  extensions.map(
+    ({ explanation, remedy, before_mm, after_mm }) =>
+      `${explanation} Our usual simulation leaves that out; it is included here, and the calibrated error is ${length(after_mm)} instead of ${length(before_mm)}. ${remedy}`,
+  );
+
 const gainWords = ({ unseen, before, after }: Gain): string =>
   `${unseen ? 'On the object kept for checking' : 'On points that were left out of the fit'}, the error ${
     after.value < before.value ? 'falls' : 'goes'

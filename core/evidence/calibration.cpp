@@ -180,7 +180,7 @@ Calibration calibrate(SimulationBag& bag, Context& context, const Eigen::VectorX
     const MisfitOfAll misfit(model, precisions);
     const StructuredObjective objective(model, misfit,
                                         likeliest_structure(model, misfit, residuals(model, fit.predictions)),
-                                        Liberties{discrepancies, freedom});
+                                        NuisanceParameters{discrepancies, freedom});
     result.profiles = profile(bag, fit, objective, context);
   }
   result.simulations = bag.simulations();

@@ -293,6 +293,13 @@ FormedResult form_sheet(std::shared_ptr<const MouldShape> shape, const Placement
     result.pressure_end_kpa = pressure(t_end) * 1e3;
     result.phase_end_s[2] = dynamics.time_s();
   }
+  // Nothing lifts the sheet: what is above model and clamp has been blown out like a bubble and folded over.
+  constexpr double max_lift_mm = 10;
+  if (dynamics.x().col(2).maxCoeff() >
+      std::max(o.clamp_height_mm, contact->top_mm()) + o.sheet_thickness_mm + max_lift_mm)
+    throw Error(
+        ErrorCode::could_not_solve, "young_modulus_pa",
+        "The sheet is too soft for this vacuum, which blows it out like a bubble: raise Young's modulus or the yield strain, or lower the vacuum.");
   const auto span = context.span(0.98, 1, "Measuring");
   measure(dynamics, *contact, o, result);
   result.frames = recorder.finish(dynamics);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Whole formings: closed forms, symmetry, invariants, orders of convergence, and what is refused.
+#include "base/error.h"
 #include "thermoform/forming.h"
 
 #include <catch2/catch_test_macros.hpp>
@@ -255,7 +256,16 @@ TEST_CASE("Forming.corners_of_the_parameters_ranges_all_finish") {
     o.yield_rule = corner & 16 ? YieldRule::total_strain : YieldRule::elastic_excess;
     FormedResult result;
     INFO("corner " << corner);
-    REQUIRE_NOTHROW(result = form(shape, o));
+    try {
+      result = form(shape, o);
+    } catch (const Error& error) {
+      // A soft liquid of this law resists no vacuum, however far it is blown out.
+      CHECK(error.code() == ErrorCode::could_not_solve);
+      CHECK(error.where() == "young_modulus_pa");
+      CHECK((o.elastic_law == ElasticLaw::incompressible_neo_hookean && o.young_modulus_pa < 1e6 && o.creep_per_s > 0 &&
+             o.yield_strain == 0));
+      continue;
+    }
     CHECK(result.sheet.mesh.V.allFinite());
     CHECK(result.vertex_distance_min_mm > 0);
     // Nothing lifts the sheet off the model.

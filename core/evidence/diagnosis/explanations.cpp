@@ -103,8 +103,8 @@ const Hypothesis& Explanations::screened(const std::vector<int>& causes, bool un
                        [&](const Hypothesis& h) { return h.causes == causes && h.unknown_structure == unknown; });
 }
 
-Liberties Explanations::liberties(const std::vector<int>& causes) const {
-  Liberties result{discrepancies_, {}};
+NuisanceParameters Explanations::nuisances(const std::vector<int>& causes) const {
+  NuisanceParameters result{discrepancies_, {}};
   for (const int p : columns_) {
     const ModelParameter& parameter = model_.parameters()[static_cast<std::size_t>(p)];
     const bool named = std::any_of(causes.begin(), causes.end(), [&](int cause) {
@@ -128,7 +128,7 @@ std::size_t Explanations::nearest_size(double structure) const {
 ParameterFit Explanations::fit_from(const std::vector<int>& causes, const std::vector<Eigen::VectorXd>& starts,
                                     std::vector<Sensitivities> known, const FitOptions& options) {
   const std::vector<int> free = model_.base_and(causes);
-  const StructuredObjective objective(model_, *misfit_, nearest_size(model_.known_misfit()), liberties(causes));
+  const StructuredObjective objective(model_, *misfit_, nearest_size(model_.known_misfit()), nuisances(causes));
   return fit_from_best(bag_, objective, free, starts, std::move(known), options, context_, fitting_stage);
 }
 
@@ -196,7 +196,7 @@ void Explanations::polish(Refit& refit) {
 }
 
 void Explanations::weigh_refit(const Refit& refit) {
-  const Liberties other = liberties(refit.causes);
+  const NuisanceParameters other = nuisances(refit.causes);
   const std::vector<int> columns = joined(refit.fit.free, other.parameters);
   const GramByStructure gram = misfit_->gram(residuals(model_, refit.fit.predictions),
                                              side_by_side(refit.fit.sensitivities, other.sensitivities));
@@ -283,7 +283,7 @@ std::vector<PairGuess> Explanations::promising_pairs() {
     const ParameterFit& fit = refit_of(h.causes).fit;
     singles.push_back({h.causes[0], fit.u, fit.predictions});
   }
-  const Liberties equal{discrepancies_, discrepancy_sensitivities_};
+  const NuisanceParameters equal{discrepancies_, discrepancy_sensitivities_};
   const StructuredObjective objective(model_, *misfit_, nearest_size(model_.known_misfit()), equal);
   PairSearch search =
       search_pairs(model_, *misfit_, objective, equal, singles, pair_anchors, context_, "Searching for two causes");

@@ -55,9 +55,9 @@ class Explanations {
   /// what it does from there on to zero. Simulates these. Throws Error{cancelled}.
   std::vector<Sensitivities> usual_sensitivities();
   /// What may differ where `causes` and nothing else is at work.
-  Liberties liberties(const std::vector<int>& causes) const;
+  NuisanceParameters nuisances(const std::vector<int>& causes) const;
   /// The discrepancy parameters alone.
-  Liberties discrepancies() const { return {discrepancies_, discrepancy_sensitivities_}; }
+  NuisanceParameters discrepancies() const { return {discrepancies_, discrepancy_sensitivities_}; }
   /// Most probable first.
   const std::vector<Hypothesis>& hypotheses() const { return hypotheses_; }
   bool is_refitted(const std::vector<int>& causes) const;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double decisive = 40;            // of log evidence: meshes move it by less
 constexpr std::size_t polished_again = 1;  // beside none
-constexpr std::size_t most_again = 5;      // explanations with causes
+constexpr std::size_t max_again = 5;       // explanations with causes
 
 const Hypothesis& plain_none(const std::vector<Hypothesis>& hypotheses) {
   return *std::find_if(hypotheses.begin(), hypotheses.end(),
@@ -56,7 +56,7 @@ void Explanations::refit_as(const Refit& coarse) {
   std::vector<Eigen::VectorXd> starts;
   for (const ParameterFit* candidate : candidates) starts.push_back(candidate->u);
   if (starts.empty()) return;
-  const StructuredObjective objective(model_, *misfit_, nearest_size(model_.known_misfit()), liberties(coarse.causes));
+  const StructuredObjective objective(model_, *misfit_, nearest_size(model_.known_misfit()), nuisances(coarse.causes));
   const auto predictions = bag_.run(starts, context_, fitting_stage);
   double best_value = refit_of({}).fit.value + out_of_reach;
   const ParameterFit* best = nullptr;
@@ -126,7 +126,7 @@ void Explanations::look_again(const Explanations& coarse) {
     const bool near = std::any_of(coarse.hypotheses_.begin(), coarse.hypotheses_.end(), [&](const Hypothesis& h) {
       return h.causes == r.causes && h.log_evidence > best - out_of_reach;
     });
-    if (near && again++ < most_again) refit_as(r);
+    if (near && again++ < max_again) refit_as(r);
   }
   normalise(hypotheses_);
   double polished = 0;

@@ -41,7 +41,7 @@ FittedStrength fitted_strength(const ForwardModel& model, const Explanations& tr
   const std::vector<Eigen::Index> places = places_of(model, fit, cause);
   const Eigen::VectorXd along = growing(result.values);
   const auto deviation = [&](std::size_t structure_size) {
-    const StructuredObjective objective(model, tried.misfit(), structure_size, tried.liberties(causes));
+    const StructuredObjective objective(model, tried.misfit(), structure_size, tried.nuisances(causes));
     Eigen::VectorXd g;
     Eigen::MatrixXd H;
     objective.quadratic(residuals(model, fit.predictions), fit.sensitivities, fit.free, fit.u, g, H);

@@ -21,8 +21,8 @@ bool one_sided(const ForwardModel& model, int cause) {
 class Neighbourhood {
  public:
   Neighbourhood(const ForwardModel& cheap, Predictions correction, const MisfitOfAll& misfit,
-                const FitObjective& objective, const Liberties& discrepancies, const std::vector<FittedSingle>& singles,
-                const FittedSingle& anchor)
+                const FitObjective& objective, const NuisanceParameters& discrepancies,
+                const std::vector<FittedSingle>& singles, const FittedSingle& anchor)
       : model_(cheap, std::move(correction)),
         bag_(model_),
         misfit_(misfit),
@@ -89,7 +89,7 @@ class Neighbourhood {
   SimulationBag bag_;
   const MisfitOfAll& misfit_;
   const FitObjective& objective_;
-  const Liberties& discrepancies_;
+  const NuisanceParameters& discrepancies_;
   const std::vector<FittedSingle>& singles_;
   const FittedSingle& anchor_;
   std::vector<int> columns_;
@@ -100,8 +100,8 @@ class Neighbourhood {
 }  // namespace
 
 PairSearch search_pairs(const ForwardModel& model, const MisfitOfAll& misfit, const FitObjective& objective,
-                        const Liberties& discrepancies, const std::vector<FittedSingle>& singles, std::size_t anchors,
-                        Context& context, const std::string& stage) {
+                        const NuisanceParameters& discrepancies, const std::vector<FittedSingle>& singles,
+                        std::size_t anchors, Context& context, const std::string& stage) {
   const ForwardModel& cheap = model.cheaper() != nullptr ? *model.cheaper() : model;
   PairSearch found;
   SimulationBag cheap_bag(cheap);

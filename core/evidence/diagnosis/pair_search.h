@@ -59,7 +59,7 @@ struct PairSearch {
 /// it. `misfit` and `objective` are the diagnosis's own. Throws Error{cancelled}; where the model has no answer, pairs
 /// are left out.
 PairSearch search_pairs(const ForwardModel& model, const MisfitOfAll& misfit, const FitObjective& objective,
-                        const Liberties& discrepancies, const std::vector<FittedSingle>& singles, std::size_t anchors,
-                        Context& context, const std::string& stage);
+                        const NuisanceParameters& discrepancies, const std::vector<FittedSingle>& singles,
+                        std::size_t anchors, Context& context, const std::string& stage);
 
 }  // namespace formwright

@@ -150,9 +150,9 @@ void take_fold(const ForwardModel& model, const std::vector<Eigen::VectorXd>& ow
 
 std::vector<Eigen::VectorXd> predictive_errors(const ForwardModel& model, const ParameterFit& fit,
                                                const std::vector<Precisions>& precisions, std::size_t structure,
-                                               const Liberties& liberties) {
-  const std::vector<int> columns = joined(fit.free, liberties.parameters);
-  const std::vector<Sensitivities> sensitivities = side_by_side(fit.sensitivities, liberties.sensitivities);
+                                               const NuisanceParameters& nuisances) {
+  const std::vector<int> columns = joined(fit.free, nuisances.parameters);
+  const std::vector<Sensitivities> sensitivities = side_by_side(fit.sensitivities, nuisances.sensitivities);
   const Predictions left = residuals(model, fit.predictions);
   const auto k = static_cast<Eigen::Index>(columns.size());
   std::vector<Eigen::VectorXd> errors = weighed_errors(left, precisions);
@@ -183,7 +183,7 @@ std::vector<Eigen::VectorXd> predictive_errors(const ForwardModel& model, const 
 }
 
 HeldOut hold_out(SimulationBag& bag, const ParameterFit& fit, const std::vector<Precisions>& precisions,
-                 std::size_t structure, const Liberties& liberties, Context& context) {
+                 std::size_t structure, const NuisanceParameters& nuisances, Context& context) {
   const ForwardModel& model = bag.model();
   const Predictions at_fit = residuals(model, fit.predictions);
   const auto k = static_cast<Eigen::Index>(fit.free.size());
@@ -197,7 +197,7 @@ HeldOut hold_out(SimulationBag& bag, const ParameterFit& fit, const std::vector<
   const auto without = [&](int left_out) {
     Fold fold;
     fold.misfit = std::make_unique<MisfitOfAll>(model, without_fold(model, precisions, left_out));
-    fold.objective = std::make_unique<StructuredObjective>(model, *fold.misfit, structure, liberties);
+    fold.objective = std::make_unique<StructuredObjective>(model, *fold.misfit, structure, nuisances);
     fold.value = fold.objective->value(at_fit, fit.u);
     Eigen::VectorXd g, low(k), high(k);
     Eigen::MatrixXd H;

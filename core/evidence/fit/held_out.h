@@ -35,12 +35,12 @@ HeldOutGain compare_weighed_errors(const ForwardModel& model, const std::vector<
                                    const std::vector<Eigen::VectorXd>& after,
                                    const std::vector<Eigen::VectorXd>& weights);
 
-/// What an explanation as a whole (its parameters, liberties, structure of the size
+/// What an explanation as a whole (its parameters, nuisance parameters, structure of the size
 /// sizes()[structure]) predicts of each fold from the others, linearised about the fit. Lengths of what is left, in
 /// which a direction counts by how well it is known; -1 for points that are left out. No simulations.
 std::vector<Eigen::VectorXd> predictive_errors(const ForwardModel& model, const ParameterFit& fit,
                                                const std::vector<Precisions>& precisions, std::size_t structure,
-                                               const Liberties& liberties);
+                                               const NuisanceParameters& nuisances);
 
 struct HeldOut {
   std::vector<Eigen::VectorXd>
@@ -51,6 +51,6 @@ struct HeldOut {
 /// For each fold, fits `fit`'s free parameters to the other folds (linearised about the fit) and predicts the fold by a
 /// simulation of its own.
 HeldOut hold_out(SimulationBag& bag, const ParameterFit& fit, const std::vector<Precisions>& precisions,
-                 std::size_t structure, const Liberties& liberties, Context& context);
+                 std::size_t structure, const NuisanceParameters& nuisances, Context& context);
 
 }  // namespace formwright

@@ -23,18 +23,18 @@ GramByStructure MisfitOfAll::gram(const Predictions& residuals, const std::vecto
 Eigen::MatrixXd StructuredObjective::reduced(const Predictions& residuals,
                                              const std::vector<Sensitivities>& sensitivities) const {
   const auto k = static_cast<Eigen::Index>(sensitivities.empty() ? 0 : sensitivities.front().size());
-  const auto d = static_cast<Eigen::Index>(liberties_.parameters.size());
+  const auto d = static_cast<Eigen::Index>(nuisances_.parameters.size());
   Eigen::MatrixXd all = Eigen::MatrixXd::Zero(1 + k + d, 1 + k + d);
   for (std::size_t object = 0; object < residuals.size(); ++object) {
     Sensitivities columns = sensitivities[object];
-    columns.insert(columns.end(), liberties_.sensitivities[object].begin(), liberties_.sensitivities[object].end());
+    columns.insert(columns.end(), nuisances_.sensitivities[object].begin(), nuisances_.sensitivities[object].end());
     all += misfit_.objects()[object].gram_at(residuals[object], columns, structure_);
   }
   if (d == 0) return all;
   Eigen::MatrixXd own = all.bottomRightCorner(d, d);
   for (Eigen::Index i = 0; i < d; ++i)
     own(i, i) +=
-        1 / std::pow(model_.parameters()[static_cast<std::size_t>(liberties_.parameters[static_cast<std::size_t>(i)])]
+        1 / std::pow(model_.parameters()[static_cast<std::size_t>(nuisances_.parameters[static_cast<std::size_t>(i)])]
                          .sd_without_cause(),
                      2);
   const Eigen::MatrixXd cross = all.bottomLeftCorner(d, 1 + k);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 // What a diagnosis makes small: misfit against noise and structure (structured_misfit.h), with the priors, and with the
-// liberties of the model integrated out.
+// nuisance parameters integrated out.
 #include "evidence/fit/noise_model.h"
 #include "evidence/fit/parameter_fit.h"
 #include "evidence/fit/structured_misfit.h"
@@ -22,7 +22,7 @@ class MisfitOfAll {
   std::vector<StructuredMisfit> objects_;
 };
 
-/// What equally good simulations would move, a standard deviation each, for every object. `liberties`: discrepancy
+/// What equally good simulations would move, a standard deviation each, for every object. `discrepancies`: discrepancy
 /// parameters; their sensitivities, each object.
 std::vector<std::vector<Eigen::MatrixXd>> movements_of(const ForwardModel& model, const std::vector<int>& discrepancies,
                                                        const std::vector<Sensitivities>& sensitivities);
@@ -34,7 +34,7 @@ std::vector<Precisions> precisions_of(const ForwardModel& model, const std::vect
 
 /// What data may differ by though nothing that is fitted is at work: the discrepancy parameters, and effects as small
 /// as they usually are. They are integrated out, with ModelParameter::sd_without_cause().
-struct Liberties {
+struct NuisanceParameters {
   std::vector<int> parameters;
   std::vector<Sensitivities> sensitivities;  // each object
 };
@@ -42,21 +42,22 @@ struct Liberties {
 /// `structure`: index into MisfitOfAll::sizes(). Model and misfit must outlive it.
 class StructuredObjective : public FitObjective {
  public:
-  StructuredObjective(const ForwardModel& model, const MisfitOfAll& misfit, std::size_t structure, Liberties liberties)
-      : model_(model), misfit_(misfit), structure_(structure), liberties_(std::move(liberties)) {}
+  StructuredObjective(const ForwardModel& model, const MisfitOfAll& misfit, std::size_t structure,
+                      NuisanceParameters nuisances)
+      : model_(model), misfit_(misfit), structure_(structure), nuisances_(std::move(nuisances)) {}
   double value(const Predictions& residuals, const Eigen::VectorXd& u) const override;
   void quadratic(const Predictions& residuals, const std::vector<Sensitivities>& sensitivities,
                  const std::vector<int>& free, const Eigen::VectorXd& u, Eigen::VectorXd& g,
                  Eigen::MatrixXd& H) const override;
 
  private:
-  /// The Gram matrix without what the liberties explain.
+  /// The Gram matrix without what the nuisance parameters explain.
   Eigen::MatrixXd reduced(const Predictions& residuals, const std::vector<Sensitivities>& sensitivities) const;
 
   const ForwardModel& model_;
   const MisfitOfAll& misfit_;
   std::size_t structure_;
-  Liberties liberties_;
+  NuisanceParameters nuisances_;
 };
 
 }  // namespace formwright

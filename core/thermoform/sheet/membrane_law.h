@@ -16,8 +16,9 @@ inline Lame lame(double young_mpa, double poisson_ratio) {
   return {mu, young_mpa * poisson_ratio / (1 - poisson_ratio * poisson_ratio) + mu};
 }
 
-/// Of det C, below which the incompressible law goes on as it is there: its stress has no bound.
-constexpr double min_squared_area_ratio = 1e-2;
+/// Of det C, below which the incompressible law's 1 / det C goes on along its tangent: it would push without bound
+/// where a real sheet wrinkles.
+constexpr double min_squared_area_ratio = 0.25;
 
 /// Second Piola-Kirchhoff stress and its tangent over (e00, e11, 2 e01), MPa.
 struct Response {
@@ -86,8 +87,9 @@ inline Double4 energy_density(const MembraneMaterial& material, double young_mpa
   if (material.elastic_law == ElasticLaw::st_venant_kirchhoff) return stretching_density(material, young_mpa, e);
   const Double4 c00 = 1.0 + 2.0 * e.e00, c01 = 2.0 * e.e01, c11 = 1.0 + 2.0 * e.e11;
   if (material.elastic_law == ElasticLaw::incompressible_neo_hookean) {
-    const Double4 determinant = maximum(c00 * c11 - c01 * c01, Double4{} + min_squared_area_ratio);
-    return young_mpa / 6 * (c00 + c11 + 1.0 / determinant - 3.0);
+    const Double4 determinant = c00 * c11 - c01 * c01;
+    const Double4 bounded = maximum(determinant, Double4{} + min_squared_area_ratio);
+    return young_mpa / 6 * (c00 + c11 + 1.0 / bounded - (determinant - bounded) / (bounded * bounded) - 3.0);
   }
   const Lame l = lame(young_mpa, material.poisson_ratio);
   const Double4 J = root(maximum(c00 * c11 - c01 * c01, Double4{} + 1e-9));

@@ -10,6 +10,7 @@
 #include <numbers>
 #include <random>
 
+#include "base/error.h"
 #include "evidence/diagnosed.h"
 #include "evidence/toy_model.h"
 #include "evidence/virtual_lab.h"
@@ -42,12 +43,14 @@ class SaggingToy : public ForwardModel {
   const std::vector<Measurement>& measurements() const override { return toy_.measurements(); }
   double known_misfit() const override { return toy_.known_misfit(); }
   Eigen::MatrixXd predict(int object, const Eigen::VectorXd& u, const Context& context) const override {
+    if (u[3] > max_ripple) throw Error(ErrorCode::could_not_solve, "", "No answer there.");
     Eigen::MatrixXd y = toy_.predict(object, u.head(sag), context);
     const Measurement& m = measurements().front();
     for (Eigen::Index i = 0; i < y.rows(); ++i)
       y(i, 1) -= u[sag] * std::sin(std::numbers::pi * m.place(i, 0)) * std::sin(2 * std::numbers::pi * m.place(i, 1));
     return y;
   }
+  double max_ripple = 1e9;  // beyond it has no answer
   std::vector<SimulationExtension> extensions() const override {
     if (!with_sag_) return {};
     return {{"sag", "Sag", "", "", with_sag_.get()}};
@@ -111,6 +114,15 @@ TEST_CASE("SimulationChoice.NothingToChooseCostsNothing") {
   const SimulationChoice choice = choose_simulation(toy, context);
   CHECK(choice.tried.empty());
   CHECK(choice.simulations == 0);
+}
+
+TEST_CASE("SimulationChoice.WhereACauseCannotBeTriedTheUsualOneGoesOn") {
+  SaggingToy model = measured(1, 0.4);
+  model.max_ripple = 0;
+  Context context;
+  const SimulationChoice choice = choose_simulation(model, context);
+  CHECK(choice.taken().empty());
+  CHECK(choice.u.size() == 0);
 }
 
 TEST_CASE("SimulationChoice.ASheetWithANetworkIsFormedWithOne") {

@@ -73,16 +73,7 @@ double log_evidence(const ForwardModel& model, const ParameterFit& fit, const Mi
   return all.log_evidence;
 }
 
-}  // namespace
-
-std::vector<std::string> SimulationChoice::taken() const {
-  std::vector<std::string> names;
-  for (const TriedExtension& t : tried)
-    if (t.taken) names.push_back(t.extension.name);
-  return names;
-}
-
-SimulationChoice choose_simulation(const ForwardModel& model, Context& context) {
+SimulationChoice chosen(const ForwardModel& model, Context& context) {
   SimulationChoice choice;
   const std::size_t rounds = model.extensions().size();
   if (rounds == 0) return choice;
@@ -155,6 +146,25 @@ SimulationChoice choose_simulation(const ForwardModel& model, Context& context) 
     best = std::move(*leader);
     best_evidence = leading;
     best_model = leading_model;
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> SimulationChoice::taken() const {
+  std::vector<std::string> names;
+  for (const TriedExtension& t : tried)
+    if (t.taken) names.push_back(t.extension.name);
+  return names;
+}
+
+SimulationChoice choose_simulation(const ForwardModel& model, Context& context) {
+  try {
+    return chosen(model, context);
+  } catch (const Error& error) {
+    // Where a cause cannot be tried about the calibrated material, the usual simulation goes on from its own start.
+    if (error.code() != ErrorCode::could_not_solve) throw;
+    return {};
   }
 }
 

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Forms objects in the foreign laboratory and diagnoses them, one line of JSON each; continues where it was stopped.
 
-run_foreign_table.py FOREIGN_LABORATORY FORMWRIGHT RESULTS.jsonl [--seeds N] [--noise MM] [--points N] [--folder DIR] [--jobs N] [--pairs]
+run_foreign_table.py FOREIGN_LABORATORY FORMWRIGHT RESULTS.jsonl [--seeds N] [--noise MM] [--points N] [--folder DIR] [--jobs N] [--pairs] [--triangles N]
                      [--only CAUSE] [--mould NAME]
 
 A round is one clean sheet of each mould and every cause once, strong; its seed decides which mould a cause is tried on, before anything is computed.
@@ -51,7 +51,7 @@ def run(command):
 
 def diagnosed(a, seed, mould, cause, level, folder):
     """One line: the hidden truth, what the diagnosis said and how long both took."""
-    line = {"seed": seed, "mould": mould, "cause": cause, "level": level, "noise_mm": a.noise, "points": a.points, "pairs": a.pairs}
+    line = {"seed": seed, "mould": mould, "cause": cause, "level": level, "noise_mm": a.noise, "points": a.points, "pairs": a.pairs, "triangles": a.triangles}
     item = folder / f"{mould}_{cause}_{seed}"
     try:
         start = time.monotonic()
@@ -92,9 +92,9 @@ def main():
     a = parser.parse_args()
     moulds, causes = names(a.laboratory)
     lines = [json.loads(line) for line in a.results.read_text().splitlines()] if a.results.exists() else []
-    done = {(line["seed"], line["mould"], line["cause"], line["level"], line["noise_mm"], line["points"], line["pairs"]) for line in lines if "error" not in line}
+    done = {(line["seed"], line["mould"], line["cause"], line["level"], line["noise_mm"], line["points"], line["pairs"], line.get("triangles", 5000)) for line in lines if "error" not in line}
     todo = [case for case in cases(moulds, causes, a.seeds)
-            if (*case, a.noise, a.points, a.pairs) not in done and a.only in (None, case[2]) and a.mould in (None, case[1])]
+            if (*case, a.noise, a.points, a.pairs, a.triangles) not in done and a.only in (None, case[2]) and a.mould in (None, case[1])]
     print(f"{len(done)} done, {len(todo)} to do", flush=True)
     lock = threading.Lock()
 

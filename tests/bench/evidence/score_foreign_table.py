@@ -83,7 +83,8 @@ Sheets that `tests/foreign_laboratory` formed, with a simulation of another kind
     if not cases:
         print("\nNo case has been answered yet.")
         return
-    print(f"\nCases: {len(cases)}, {sum(c['cause'] == 'none' for c in cases)} of them clean.")
+    meshes = sorted({c.get("triangles", 5000) for c in cases})
+    print(f"\nCases: {len(cases)}, {sum(c['cause'] == 'none' for c in cases)} of them clean. Triangles of the simulated sheet: {' or '.join(f'{n:,}' for n in meshes)}, and twice as many where a case was open.")
     table("All cases", [("every mould", strong)] + [(mould, [c for c in strong if c["mould"] == mould]) for mould in moulds])
     seen = [c for c in strong if c["cause"] == "none" or visible(c)]
     table("Only causes that the answer lists as visible", [("every mould", seen)])
@@ -101,13 +102,13 @@ Sheets that `tests/foreign_laboratory` formed, with a simulation of another kind
         if clean:
             print(f"\nClean sheets: mean distance of {statistics.median(clean):.2f} mm (median) between sheet and calibrated simulation on held-out blocks, noise alone would give "
                   f"{statistics.median(c['noise_floor_mm'] for c in good if c['cause'] == 'none'):.2f} mm.")
-        print(f"\nMedian wall time of a case, with whatever else the machine did: {statistics.median(c['seconds_forming'] for c in good):.0f} s to form, "
+        print(f"\nMedian wall time of a case, with whatever else the machine did: {statistics.median(c['seconds_forming'] for c in good if c['seconds_forming']):.0f} s to form, "
               f"{statistics.median(c['seconds_diagnosing'] for c in good):.0f} s to diagnose. Failed: {len(cases) - len(good)}.")
-    print("\n## Every answer\n\n| hidden | strength | mould | moved mm | answer | likeliest causes | error before → after, mm | seed |\n|---|---|---|---:|---|---|---|---:|")
+    print("\n## Every answer\n\n| hidden | strength | mould | moved mm | answer | likeliest causes | simulation with | error before → after, mm | seed |\n|---|---|---|---:|---|---|---|---|---:|")
     for c in cases:
         errors = f"{c['error_before_mm']:.2f} → {c['error_after_mm']:.2f}" if "error" not in c else ""
         mark = "" if c["cause"] == "none" or right(c) or not c.get("in_the_list", True) else " ✗"
-        print(f"| {c['cause']} | {strength(c)} | {c['mould']} | {c.get('movement_mean_mm', 0):.2f} | {answer(c)}{mark} | {first_names(c)} | {errors} | {c['seed']} |")
+        print(f"| {c['cause']} | {strength(c)} | {c['mould']} | {c.get('movement_mean_mm', 0):.2f} | {answer(c)}{mark} | {first_names(c)} | {', '.join(c.get('simulation', []))} | {errors} | {c['seed']} |")
 
 
 if __name__ == "__main__":

@@ -119,7 +119,21 @@ Probing probe_around(SimulationBag& bag, const Eigen::VectorXd& u, const Predict
           model.parameters()[static_cast<std::size_t>(p)].role == ParameterRole::discrepancy && sign < 0;
       points.push_back(switched ? u : within_ranges(model, moved));
     }
-  const auto predictions = bag.run(points, context, stage);
+  auto predictions = bag.run(points, context, stage);
+  // Where there is no answer on either side a shorter step may have one.
+  constexpr double shorter = 0.25;
+  std::vector<std::size_t> again;
+  std::vector<Eigen::VectorXd> nearer;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (!predictions[i] && (!predictions[i ^ 1] || points[i ^ 1] == u)) {
+      again.push_back(i);
+      points[i] = u + shorter * (points[i] - u);
+      nearer.push_back(points[i]);
+    }
+  if (!nearer.empty()) {
+    auto found = bag.run(nearer, context, stage);
+    for (std::size_t i = 0; i < again.size(); ++i) predictions[again[i]] = std::move(found[i]);
+  }
   Probing result{std::vector<Sensitivities>(at_u.size()), std::vector<std::vector<Eigen::MatrixXd>>(at_u.size())};
   for (std::size_t i = 0; i < free.size(); ++i) {
     const Eigen::Index p = free[i];

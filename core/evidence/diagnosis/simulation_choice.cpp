@@ -140,10 +140,10 @@ SimulationChoice chosen(const ForwardModel& model, Context& context) {
       }
       choice.simulations += bag.simulations();
     }
+    choice.u = best.u;
     if (!leader || leading < best_evidence + min_gain) return choice;
     choice.tried[leading_place].taken = true;
     best = std::move(*leader);
-    choice.u = best.u;
     best_evidence = leading;
     best_model = leading_model;
   }

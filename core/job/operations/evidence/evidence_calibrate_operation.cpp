@@ -117,7 +117,8 @@ OperationResult run_evidence_calibrate(const OperationCall& call, const Calibrat
   SimulationBag bag(model);
   const Calibration calibration = [&] {
     const auto span = call.context.span(o.method == CalibrationMethod::fit ? 0.3 : 0.01, 1, "Calibrating");
-    return search(bag, o, choice.u, call.context);
+    // The usual simulation is calibrated from the set-up as it is.
+    return search(bag, o, choice.taken().empty() ? Eigen::VectorXd() : choice.u, call.context);
   }();
 
   MachineProfile profile = model.profile_at(calibration.u);

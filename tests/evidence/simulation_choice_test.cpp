@@ -175,6 +175,8 @@ TEST_CASE("ThermoformModel.AnExtensionIsASettingOfTheProfile") {
   for (std::size_t p = 0; p < both.parameters().size(); ++p)
     CHECK(both.parameters()[p].name == usual.parameters()[p].name);
   CHECK(both.base_parameters().size() == usual.base_parameters().size() + 1);
+  // An object whose set-up has it already needs nothing more.
+  CHECK(&model.extended_by({"constant_volume"}) == &model);
 }
 
 /// An effect as small as it usually is is no fault, however well the data show it.

@@ -217,7 +217,7 @@ Json diagnosis_json(const DiagnosisReport& report) {
   json["simulation"] = simulation_json(report.simulation);
   json["simulations"] = d.simulations + report.simulation.simulations;
   json["seconds_calibration"] = d.seconds_calibration;
-  json["seconds_diagnosis"] = d.seconds;
+  json["seconds_diagnosis"] = d.seconds + report.simulation.seconds;
   json["notes"] = report.notes;
   return json;
 }

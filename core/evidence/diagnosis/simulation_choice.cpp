@@ -159,8 +159,11 @@ std::vector<std::string> SimulationChoice::taken() const {
 }
 
 SimulationChoice choose_simulation(const ForwardModel& model, Context& context) {
+  Stopwatch watch;
   try {
-    return chosen(model, context);
+    SimulationChoice choice = chosen(model, context);
+    choice.seconds = watch.seconds();
+    return choice;
   } catch (const Error& error) {
     // Where a cause cannot be tried about the calibrated material, the usual simulation goes on from its own start.
     if (error.code() != ErrorCode::could_not_solve) throw;

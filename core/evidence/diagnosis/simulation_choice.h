@@ -20,6 +20,7 @@ struct TriedExtension {
 struct SimulationChoice {
   std::vector<TriedExtension> tried;  // in the order in which they were
   int simulations = 0;
+  double seconds = 0;
   Eigen::VectorXd u;  // where the chosen one is calibrated; empty where there was nothing to choose
 
   /// Names of those taken, in that order.

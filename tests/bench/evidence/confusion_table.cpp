@@ -114,8 +114,8 @@ Json one_case(const std::vector<std::string>& hidden, double level, double sigma
   line["structure_mm"] = {d.unexplained_before, d.unexplained_after};
   line["held_out_mm"] = {d.held_out.before.mean, d.held_out.after.mean};
   line["noise_mm"] = {d.noise.front().sigma, d.noise_floor};
-  line["simulations"] = d.simulations;
-  line["seconds"] = d.seconds;
+  line["simulations"] = d.simulations + choice.simulations;
+  line["seconds"] = d.seconds + choice.seconds;
   line["looked_again"] = d.looked_again;
   line["answers"] = Json::array();
   for (const Answer& answer : d.answers) {

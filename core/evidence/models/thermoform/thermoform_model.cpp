@@ -143,8 +143,8 @@ std::vector<SimulationExtension> ThermoformModel::extensions() const {
 const ThermoformModel& ThermoformModel::extended_by(const std::vector<std::string>& names) const {
   const ThermoformModel* model = this;
   for (const std::string& name : names) {
-    model->extensions();
-    model = model->extended_.at(name).get();
+    for (const SimulationExtension& extension : model->extensions())
+      if (extension.name == name) model = model->extended_.at(name).get();
   }
   return *model;
 }

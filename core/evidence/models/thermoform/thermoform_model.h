@@ -61,7 +61,7 @@ class ThermoformModel : public ForwardModel {
   /// On twice the triangles, where these are no more than most are content with.
   const ForwardModel* finer() const override;
   std::vector<SimulationExtension> extensions() const override;
-  /// This, or what `names` make of it; each of them among the extensions of the one before.
+  /// This, or what `names` make of it. What its set-up or profile has already is passed over.
   const ThermoformModel& extended_by(const std::vector<std::string>& names) const;
   const ThermoformModelOptions& options() const { return options_; }
 

@@ -171,7 +171,7 @@ OperationResult run_evidence_calibrate(const OperationCall& call, const Calibrat
   report["parameters"] = parameters;
   report["not_identified"] = not_identified;
   report["simulations"] = calibration.simulations + choice.simulations;
-  report["seconds_calibration"] = calibration.seconds;
+  report["seconds_calibration"] = calibration.seconds + choice.seconds;
   report["notes"] = notes;
   Json details = report;
   details["method"] = o.method == CalibrationMethod::fit ? "fit" : "grid";

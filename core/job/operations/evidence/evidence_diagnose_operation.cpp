@@ -132,14 +132,14 @@ OperationResult run_evidence_diagnose(const OperationCall& call, const DiagnoseO
       other->predict(static_cast<int>(i), other->nominal(), call.context);
   }
   const SimulationChoice choice = [&] {
-    const auto span = call.context.span(0.02, 0.1, "Choosing the simulation");
+    const auto span = call.context.span(0.02, 0.25, "Choosing the simulation");
     return choose_simulation(usual, call.context);
   }();
   const ThermoformModel& model = usual.extended_by(choice.taken());
   SimulationBag bag(model);
   Diagnosis diagnosis;
   {
-    const auto span = call.context.span(0.1, o.separate ? 0.85 : 0.95, "Diagnosing");
+    const auto span = call.context.span(0.25, o.separate ? 0.85 : 0.95, "Diagnosing");
     DiagnosisOptions own;
     own.pairs = o.pairs;
     own.start = choice.u;

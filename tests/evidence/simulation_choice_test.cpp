@@ -24,7 +24,7 @@ using evidence_test::ToyModel;
 
 constexpr Eigen::Index sag = 6;
 
-/// A toy whose objects sag, which it leaves out unless it is told to simulate that.
+/// A toy whose objects sag. Its usual simulation leaves that out.
 class SaggingToy : public ForwardModel {
  public:
   SaggingToy(ToyModel toy, bool simulates_sag) : toy_(std::move(toy)), parameters_(toy_.parameters()) {

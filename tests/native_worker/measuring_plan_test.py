@@ -92,7 +92,7 @@ class MeasuringPlan(unittest.TestCase):
 
     def test_strong_causes_show_sooner_with_all_marks(self):
         causes = self.report["causes"]
-        self.assertEqual(len(causes), 15)
+        self.assertEqual(len(causes), 14)
         for cause in causes:
             few, every = cause["min_visible_strength"], cause["best_visible_strength"]
             # What contact does differently about two materials can hide a cause from more marks, too.

@@ -14,7 +14,7 @@ namespace formwright {
 namespace {
 
 constexpr std::size_t refitted_singles = 8, refitted_pairs = 6, pair_anchors = 4, leader_count = 4;
-constexpr double hopeless = 300;  // log evidence, of a linear model, that no fit makes up for
+constexpr double out_of_linear_reach = 300;  // log evidence: linear models are wrong by less
 constexpr FitOptions polishing_fit{8, 0.01, true};
 
 }  // namespace
@@ -107,11 +107,8 @@ NuisanceParameters Explanations::nuisances(const std::vector<int>& causes) const
   NuisanceParameters result{discrepancies_, {}};
   for (const int p : columns_) {
     const ModelParameter& parameter = model_.parameters()[static_cast<std::size_t>(p)];
-    const bool named = std::any_of(causes.begin(), causes.end(), [&](int cause) {
-      const std::vector<int>& own = model_.causes()[static_cast<std::size_t>(cause)].parameters;
-      return std::find(own.begin(), own.end(), p) != own.end();
-    });
-    if (parameter.role == ParameterRole::effect && parameter.usual_sd > 0 && !named) result.parameters.push_back(p);
+    if (parameter.role == ParameterRole::effect && parameter.usual_sd > 0 && !model_.is_of(p, causes))
+      result.parameters.push_back(p);
   }
   result.sensitivities = sensitivities_of(result.parameters, sensitivities_, columns_);
   return result;
@@ -173,7 +170,7 @@ std::optional<ParameterFit> Explanations::fit_from_nominal(const std::vector<int
   }
   Hypothesis h = screened(causes, false);
   weigh(model_, about_nominal_, columns_, model_.nominal(), h);
-  if (h.log_evidence < screened_.front().log_evidence - hopeless) return {};
+  if (h.log_evidence < screened_.front().log_evidence - out_of_linear_reach) return {};
   const std::vector<int> free = model_.base_and(causes);
   return fit_from(causes, {model_.nominal(), towards(model_, free, model_.nominal(), h.u)},
                   sensitivities_of(free, nominal_sensitivities_, columns_), quick_fit);

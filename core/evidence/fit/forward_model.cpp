@@ -15,6 +15,13 @@ double ModelParameter::coordinate(double value) const {
   return logarithmic ? std::log(std::max(value, 1e-6 * nominal) / nominal) : value - nominal;
 }
 
+bool ForwardModel::is_of(int parameter, const std::vector<int>& causes) const {
+  return std::any_of(causes.begin(), causes.end(), [&](int cause) {
+    const std::vector<int>& own = this->causes()[static_cast<std::size_t>(cause)].parameters;
+    return std::find(own.begin(), own.end(), parameter) != own.end();
+  });
+}
+
 std::vector<int> ForwardModel::parameters_with(ParameterRole role) const {
   std::vector<int> indices;
   for (std::size_t p = 0; p < parameters().size(); ++p)

@@ -84,8 +84,8 @@ struct Measurement {
 
 class ForwardModel;
 
-/// Something that the simulation leaves out and can be told to do. It is a fault of ours, not of a machine: where data
-/// ask for it, causes are looked for with it.
+/// Something that the simulation leaves out unless a setting turns it on. It is a fault of ours, not of a machine:
+/// where data show it, causes are looked for with it.
 struct SimulationExtension {
   std::string name, label;
   std::string explanation;  // what the simulation leaves out, in a sentence
@@ -129,6 +129,8 @@ class ForwardModel {
   virtual double known_misfit() const = 0;
 
   std::vector<int> parameters_with(ParameterRole role) const;
+  /// `parameter` belongs to one of `causes`.
+  bool is_of(int parameter, const std::vector<int>& causes) const;
   std::vector<int> base_parameters() const { return parameters_with(ParameterRole::base); }
   /// Base parameters, then those of `causes` in their order: what is fitted together.
   std::vector<int> base_and(const std::vector<int>& causes) const;

@@ -23,21 +23,13 @@ double log_sum_exp(const std::vector<double>& values) {
 
 double normal_cdf(double x) { return 0.5 * std::erfc(-x / std::sqrt(2.0)); }
 
-/// A parameter of one of these causes.
-bool is_of(const ForwardModel& model, int parameter, const std::vector<int>& causes) {
-  return std::any_of(causes.begin(), causes.end(), [&](int cause) {
-    const std::vector<int>& own = model.causes()[static_cast<std::size_t>(cause)].parameters;
-    return std::find(own.begin(), own.end(), parameter) != own.end();
-  });
-}
-
 /// Of `columns`, which have a say where `causes` are at work.
 std::vector<int> indices_of(const ForwardModel& model, const std::vector<int>& columns,
                             const std::vector<int>& causes) {
   std::vector<int> chosen;
   for (std::size_t c = 0; c < columns.size(); ++c) {
     const bool always = model.parameters()[static_cast<std::size_t>(columns[c])].sd_without_cause() > 0;
-    if (always || is_of(model, columns[c], causes)) chosen.push_back(static_cast<int>(c));
+    if (always || model.is_of(columns[c], causes)) chosen.push_back(static_cast<int>(c));
   }
   return chosen;
 }
@@ -57,7 +49,7 @@ Weighed weigh_at(const ForwardModel& model, const Eigen::MatrixXd& gram, double 
   for (Eigen::Index i = 0; i < k; ++i) {
     const int column = chosen[static_cast<std::size_t>(i)], p = columns[static_cast<std::size_t>(column)];
     const ModelParameter& parameter = model.parameters()[static_cast<std::size_t>(p)];
-    precision[i] = std::pow(is_of(model, p, causes) ? parameter.prior_sd : parameter.sd_without_cause(), -2);
+    precision[i] = std::pow(model.is_of(p, causes) ? parameter.prior_sd : parameter.sd_without_cause(), -2);
     offset[i] = u0[p];
     b[i] = gram(1 + column, 0) - precision[i] * offset[i];
     for (Eigen::Index j = 0; j < k; ++j) A(i, j) = gram(1 + column, 1 + chosen[static_cast<std::size_t>(j)]);
@@ -72,7 +64,7 @@ Weighed weigh_at(const ForwardModel& model, const Eigen::MatrixXd& gram, double 
     const ModelParameter& parameter = model.parameters()[static_cast<std::size_t>(
         columns[static_cast<std::size_t>(chosen[static_cast<std::size_t>(i)])])];
     if (!parameter.one_sided() ||
-        !is_of(model, columns[static_cast<std::size_t>(chosen[static_cast<std::size_t>(i)])], causes))
+        !model.is_of(columns[static_cast<std::size_t>(chosen[static_cast<std::size_t>(i)])], causes))
       continue;
     log_share += std::log(std::max(1e-30, 2 * normal_cdf((offset[i] + result.step[i]) / std::sqrt(covariance(i, i)))));
   }
@@ -117,8 +109,8 @@ void weigh(const ForwardModel& model, const GramByStructure& gram, const std::ve
   for (std::size_t i = 0; i < chosen.size(); ++i)
     if (const int p = columns[static_cast<std::size_t>(chosen[i])];
         model.parameters()[static_cast<std::size_t>(p)].role != ParameterRole::effect ||
-        is_of(model, p, hypothesis.causes))
-      hypothesis.u[columns[static_cast<std::size_t>(chosen[i])]] += weighed[best].step[static_cast<Eigen::Index>(i)];
+        model.is_of(p, hypothesis.causes))
+      hypothesis.u[p] += weighed[best].step[static_cast<Eigen::Index>(i)];
   hypothesis.u = within_ranges(model, hypothesis.u);
 }
 
@@ -169,7 +161,7 @@ std::vector<int> indices_of_no_cause(const ForwardModel& model, const std::vecto
 std::vector<int> indices_of_cause(const ForwardModel& model, const std::vector<int>& columns, int cause) {
   std::vector<int> chosen;
   for (std::size_t c = 0; c < columns.size(); ++c)
-    if (is_of(model, columns[c], {cause})) chosen.push_back(static_cast<int>(c));
+    if (model.is_of(columns[c], {cause})) chosen.push_back(static_cast<int>(c));
   return chosen;
 }
 
@@ -228,7 +220,7 @@ double similarity(const ForwardModel& model, const GramByStructure& gram, std::s
 
 double min_visible_strength(const ForwardModel& model, const GramByStructure& gram, std::size_t structure,
                             const std::vector<int>& columns, int cause) {
-  constexpr double deviations = 4;
+  constexpr double deviations = 4;  // of the strength: a log evidence of 8
   const Eigen::MatrixXd& G = gram.gram[structure];
   const auto k = static_cast<Eigen::Index>(columns.size());
   const std::vector<int> others = indices_of_no_cause(model, columns), own = indices_of_cause(model, columns, cause);

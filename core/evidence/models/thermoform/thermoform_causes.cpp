@@ -118,12 +118,12 @@ const std::vector<ThermoformExtension>& thermoform_extensions() {
   static const std::vector<ThermoformExtension> table = {
       {"lasting_network", "Part of the plastic never flows",
        "Part of the hot plastic pulls back like rubber, the more the more it is drawn, and keeps steep walls thicker.",
-       "The setting network_share keeps that part; the profile has it. A simulation takes up to a third longer.",
+       "The setting “Stiffness that never flows” (network_share) keeps that part; the profile has it. A simulation takes up to a third longer.",
        &network, Json::object()},
       {"constant_volume",
        "The plastic keeps its volume",
        "Hot plastic thins exactly as much as it is stretched, and is stiffer in two directions at once than in one.",
-       "The setting elastic_law does that; the profile has it. A simulation takes as long as before.",
+       "The setting “Elastic law” (elastic_law) does that; the profile has it. A simulation takes as long as before.",
        nullptr,
        {{"elastic_law", "incompressible_neo_hookean"}}}};
   return table;

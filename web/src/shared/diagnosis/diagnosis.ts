@@ -84,7 +84,6 @@ export interface Diagnosis {
   }[];
   /** What the simulation was extended by before causes were looked for. */
   readonly extensions: readonly {
-    readonly label: string;
     readonly explanation: string;
     readonly remedy: string;
     readonly before_mm: number;
@@ -192,7 +191,6 @@ export function readDiagnosis(report: Report): Diagnosis {
     extensions: list(report['simulation'])
       .filter((one) => one['taken'] === true)
       .map((one) => ({
-        label: text(one['label']),
         explanation: text(one['explanation']),
         remedy: text(one['remedy']),
         before_mm: number(one['error_before_mm']),

@@ -11,6 +11,7 @@ import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import os from 'node:os';
 import path from 'node:path';
 import { createInterface } from 'node:readline';
+import { strToU8, zipSync } from 'fflate';
 import { machine, round } from './jobs.mjs';
 
 const job = (operation, parameters, inputs = {}, outputs) => ({ operation, parameters, inputs, ...(outputs ? { outputs } : {}) });
@@ -19,11 +20,27 @@ const made = (maker, output) => ({ maker, output });
 const model = (name, vertices) => made(job('import', {}, { mesh: { sample: name, vertices } }), 'model.ply');
 const relief = (name, vertices, parameters = {}, outputs) => job('relief', parameters, { mesh: model(name, vertices) }, outputs);
 const forming = (operation, name, vertices, parameters = {}) => job(operation, parameters, { mould: model(name, vertices) });
-const design = (name, vertices, width_mm = 20) => job('zippable-design', { width_mm, size_mm: 300 }, { mesh: model(name, vertices) });
+const design = (name, vertices, width_mm = 20, size_mm = 300) => job('zippable-design', { width_mm, size_mm }, { mesh: model(name, vertices) });
 const zipping = (name, vertices, width_mm = 20) => job('zippable-simulate', {}, { design: made(design(name, vertices, width_mm), 'design.json') });
 const small = { size_mm: 60, sheet_x_mm: 130, sheet_y_mm: 130, clamp_opening_x_mm: 110, clamp_opening_y_mm: 110, platform_travel_mm: 60 };
 const measured = (name, fault) => made(job('evidence-virtual-object', { ...small, points: 300, triangles: 1500, ...fault }, { mould: { sample: name } }, ['object.zip']), 'object.zip');
 const diagnosing = (operation, parameters, name, fault) => job(operation, parameters, { object: measured(name, fault) });
+
+const light = (name, vertices, parameters = {}) => job('relief-light', parameters, { mesh: model(name, vertices) });
+const planPoints = (name, parameters = {}) => job('evidence-plan-points', { ...small, ...parameters }, { mould: { sample: name } });
+/** What was sewn, measured with a tape: all twenty lengths are `stretch` times as long as designed. */
+const sewn = (name, vertices, stretch) => {
+  const designed = made(design(name, vertices, 25, 200), 'design.json');
+  const lengths = made(job('evidence-plan-lengths', {}, { design: designed }), 'lengths.csv');
+  const measuredLengths = (file) => {
+    const [header, ...rows] = String(file).trim().split('\n');
+    const measuredRow = (row) => row.split(',').map((cell, k, cells) => (k === 3 ? (stretch * Number(cells[5])).toFixed(1) : cell));
+    return [header, ...rows.map((row) => measuredRow(row).join())].join('\n') + '\n';
+  };
+  const packed = ([file, table]) => zipSync({ 'design.json': file, 'lengths.csv': strToU8(measuredLengths(table)) });
+  return { pack: packed, of: [designed, lengths], file_name: 'object.zip', key: `sewn ${name} ${vertices} ${stretch}` };
+};
+const diagnosingSewn = (name, vertices, stretch, parameters = {}) => job('evidence-diagnose-zippable', parameters, { object: sewn(name, vertices, stretch) });
 
 /** What is known of how an operation spends its time comes from these. */
 const recorded = {
@@ -70,6 +87,18 @@ const recorded = {
   diagnose_hemisphere_without_pairs: diagnosing('evidence-diagnose', { triangles: 1500, pairs: false }, 'hemisphere', { heating_gradient_x: 0.4 }),
   diagnose_t_shape_clean_without_pairs: diagnosing('evidence-diagnose', { triangles: 1000, pairs: false }, 't_shape', {}),
   diagnose_cone_without_pairs: diagnosing('evidence-diagnose', { triangles: 1500, pairs: false }, 'mountain', { thickness_wedge_x: 0.3 }),
+  forest_pillars: job('relief-forest', {}),
+  forest_screens: job('relief-forest', { layout: 'screens' }),
+  forest_fine: job('relief-forest', { seed: 2, pixel_mm: 0.8 }),
+  light_bust: light('bust', 60000),
+  light_octopus: light('octopus', 40000, { thickness_mm: 8 }),
+  light_cat_sky: light('cat', 40000, { light: 'overcast' }),
+  light_bust_sky: light('bust', 60000, { light: 'overcast' }),
+  plan_points_pyramid: planPoints('pyramid', { triangles: 2500 }),
+  plan_points_t_shape: planPoints('t_shape', { triangles: 2500, mark_count: 20 }),
+  diagnose_sewn_star: diagnosingSewn('star', 1500, 1.03),
+  diagnose_sewn_heart: diagnosingSewn('heart', 1200, 1.02),
+  diagnose_sewn_star_small: diagnosingSewn('star', 1000, 0.98),
   calibrate_pyramid: diagnosing('evidence-calibrate', { triangles: 3000 }, 'pyramid', { young_modulus_pa: 3300000 }),
   calibrate_t_shape: diagnosing('evidence-calibrate', { triangles: 3000 }, 't_shape', { young_modulus_pa: 2500000 }),
   calibrate_hemisphere: diagnosing('evidence-calibrate', { triangles: 5000 }, 'hemisphere', { young_modulus_pa: 3000000 }),
@@ -95,6 +124,11 @@ const judged = {
   evidence_diagnose_hemisphere: diagnosing('evidence-diagnose', { triangles: 1500 }, 'hemisphere', { scan_shift_x_mm: 1 }),
   evidence_diagnose_without_pairs: diagnosing('evidence-diagnose', { triangles: 1000, pairs: false }, 'hemisphere', { weak_vacuum: 0.5 }),
   evidence_diagnose_t_shape_without_pairs: diagnosing('evidence-diagnose', { triangles: 1500, pairs: false }, 't_shape', { heating_gradient_y: 0.4 }),
+  relief_forest_grid: job('relief-forest', { layout: 'grid', seed: 3 }),
+  relief_light_fish: light('fish', 60000, { thickness_mm: 3 }),
+  relief_light_mountain_sky: light('mountain', 60000, { light: 'overcast' }),
+  evidence_plan_points_hemisphere: planPoints('hemisphere', { triangles: 3000 }),
+  evidence_diagnose_sewn_t_shape: diagnosingSewn('t_shape', 1500, 1.02),
   evidence_calibrate_pyramid: diagnosing('evidence-calibrate', { triangles: 4000 }, 'pyramid', { young_modulus_pa: 2000000 }),
 };
 
@@ -127,21 +161,33 @@ function run(program, message, files) {
 
 const kept = new Map(); // outputs of makers, by their messages
 
+/** An output of another job, or what is packed of several. */
+async function bytesOf(program, input) {
+  const key = input.pack ? input.key : JSON.stringify(input);
+  if (!kept.has(key)) {
+    if (!input.pack) kept.set(key, (await runWithInputs(program, { ...input.maker, outputs: [input.output] })).bytes[input.output]);
+    else {
+      const files = [];
+      for (const part of input.of) files.push(await bytesOf(program, part));
+      kept.set(key, input.pack(files));
+    }
+  }
+  return kept.get(key);
+}
+
 /** Runs a job after those that make its inputs. */
 async function runWithInputs(program, message) {
   const files = {};
   const inputs = {};
   for (const [name, input] of Object.entries(message.inputs)) {
-    if (!input.maker) {
+    if (!input.maker && !input.pack) {
       inputs[name] = input;
       continue;
     }
-    const key = JSON.stringify(input);
-    if (!kept.has(key)) kept.set(key, (await runWithInputs(program, { ...input.maker, outputs: [input.output] })).bytes[input.output]);
-    const bytes = kept.get(key);
+    const bytes = await bytesOf(program, input);
     const sha256 = createHash('sha256').update(bytes).digest('hex');
     files[sha256] = bytes;
-    inputs[name] = { sha256, file_name: input.output };
+    inputs[name] = { sha256, file_name: input.pack ? input.file_name : input.output };
   }
   return await run(program, { ...message, inputs }, files);
 }

@@ -151,6 +151,16 @@ TEST_CASE("ProgressClock.TheRunThatIsLikeThisOneCounts") {
   CHECK(given > 1100);  // of 1,750 moments
 }
 
+TEST_CASE("ProgressClock.AnOperationThatWasNeverMeasuredHasAShareButNoRemainingTime") {
+  ProgressClock clock(usual_time_shares("no such operation"));
+  TimeShares even;
+  even.fill(0.2);
+  for (const auto& [at, said] : follow(clock, even)) {
+    CHECK_FALSE(said.seconds_left);
+    if (at > 0.4) CHECK_THAT(said.passed, WithinAbs(at / 20, 0.01));
+  }
+}
+
 TEST_CASE("ProgressClock.MeasuresHowTheTimeWasSpent") {
   ProgressClock clock(usual_time_shares("no such operation"));
   follow(clock, times(uneven(), 30));
@@ -170,8 +180,7 @@ TEST_CASE("ProgressClock.MeasuresHowTheTimeWasSpent") {
 }
 
 TEST_CASE("ProgressClock.UsualSharesAddUpToOne") {
-  for (const char* name :
-       {"relief", "thermoform-simulate", "zippable-design", "evidence-diagnose", "no such operation"}) {
+  for (const char* name : {"relief", "thermoform-simulate", "zippable-design", "evidence-diagnose"}) {
     INFO(name);
     const std::vector<TimeShares> runs = usual_time_shares(name);
     CHECK(!runs.empty());

@@ -124,6 +124,19 @@ Eigen::MatrixXd StructuredMisfit::gram_at(const Eigen::MatrixXd& residual,
   return own.plain - own.projected.transpose() * own.projected;
 }
 
+std::vector<Eigen::MatrixXd> StructuredMisfit::weighed(std::span<const Eigen::MatrixXd> columns,
+                                                       std::size_t index) const {
+  std::vector<Eigen::MatrixXd> result;
+  for (const Eigen::MatrixXd& column : columns) {
+    const Eigen::MatrixXd left = tau_[index] > 0 ? Eigen::MatrixXd(column - smooth(column, index)) : column;
+    Eigen::MatrixXd weighted = Eigen::MatrixXd::Zero(left.rows(), d_);
+    for (Eigen::Index p = 0; p < d_; ++p)
+      for (Eigen::Index q = 0; q < d_; ++q) weighted.col(p) += precisions_.col(p * d_ + q).cwiseProduct(left.col(q));
+    result.push_back(std::move(weighted));
+  }
+  return result;
+}
+
 Eigen::MatrixXd StructuredMisfit::smooth(const Eigen::MatrixXd& residual, std::size_t index) const {
   Eigen::MatrixXd field = Eigen::MatrixXd::Zero(residual.rows(), residual.cols());
   if (tau_[index] <= 0) return field;

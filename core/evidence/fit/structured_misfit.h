@@ -45,6 +45,8 @@ class StructuredMisfit {
   /// The same for one size alone: tau[index].
   Eigen::MatrixXd gram_at(const Eigen::MatrixXd& residual, std::span<const Eigen::MatrixXd> sensitivities,
                           std::size_t index) const;
+  /// n x d each: C^-1 times `columns`, for tau[index].
+  std::vector<Eigen::MatrixXd> weighed(std::span<const Eigen::MatrixXd> columns, std::size_t index) const;
   /// n x d: the smooth part of `residual`, as expected for structure of size tau[index].
   Eigen::MatrixXd smooth(const Eigen::MatrixXd& residual, std::size_t index) const;
   /// n: how far smoothing takes a point with it, mean over directions (leverage in [0, 1)).

@@ -6,6 +6,18 @@
 #include "evidence/fit/hypotheses.h"
 
 namespace formwright {
+namespace {
+
+/// a_i^T b_j.
+Eigen::MatrixXd inner_products(std::span<const Eigen::MatrixXd> a, std::span<const Eigen::MatrixXd> b) {
+  Eigen::MatrixXd products(static_cast<Eigen::Index>(a.size()), static_cast<Eigen::Index>(b.size()));
+  for (Eigen::Index i = 0; i < products.rows(); ++i)
+    for (Eigen::Index j = 0; j < products.cols(); ++j)
+      products(i, j) = a[static_cast<std::size_t>(i)].cwiseProduct(b[static_cast<std::size_t>(j)]).sum();
+  return products;
+}
+
+}  // namespace
 
 MisfitOfAll::MisfitOfAll(const ForwardModel& model, const std::vector<Precisions>& precisions)
     : sizes_(structure_sizes(model)) {
@@ -20,25 +32,35 @@ GramByStructure MisfitOfAll::gram(const Predictions& residuals, const std::vecto
   return sum;
 }
 
+StructuredObjective::StructuredObjective(const ForwardModel& model, const MisfitOfAll& misfit, std::size_t structure,
+                                         const NuisanceParameters& nuisances)
+    : model_(model), misfit_(misfit), structure_(structure) {
+  const auto d = static_cast<Eigen::Index>(nuisances.parameters.size());
+  Eigen::MatrixXd own = Eigen::MatrixXd::Zero(d, d);
+  for (Eigen::Index i = 0; i < d; ++i) {
+    const auto p = static_cast<std::size_t>(nuisances.parameters[static_cast<std::size_t>(i)]);
+    own(i, i) = 1 / std::pow(model.parameters()[p].sd_without_cause(), 2);
+  }
+  for (std::size_t object = 0; object < misfit.objects().size(); ++object) {
+    const Sensitivities& columns = nuisances.sensitivities[object];
+    weighed_nuisances_.push_back(misfit.objects()[object].weighed(columns, structure));
+    own += inner_products(weighed_nuisances_.back(), columns);
+  }
+  nuisance_factor_.compute(own);
+}
+
 Eigen::MatrixXd StructuredObjective::reduced(const Predictions& residuals,
                                              const std::vector<Sensitivities>& sensitivities) const {
-  const auto k = static_cast<Eigen::Index>(sensitivities.empty() ? 0 : sensitivities.front().size());
-  const auto d = static_cast<Eigen::Index>(nuisances_.parameters.size());
-  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(1 + k + d, 1 + k + d);
+  const auto k = static_cast<Eigen::Index>(sensitivities.front().size());
+  const Eigen::Index d = nuisance_factor_.rows();
+  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(1 + k, 1 + k), cross = Eigen::MatrixXd::Zero(d, 1 + k);
   for (std::size_t object = 0; object < residuals.size(); ++object) {
-    Sensitivities columns = sensitivities[object];
-    columns.insert(columns.end(), nuisances_.sensitivities[object].begin(), nuisances_.sensitivities[object].end());
-    all += misfit_.objects()[object].gram_at(residuals[object], columns, structure_);
+    gram += misfit_.objects()[object].gram_at(residuals[object], sensitivities[object], structure_);
+    cross.col(0) += inner_products(weighed_nuisances_[object], {&residuals[object], 1});
+    cross.rightCols(k) += inner_products(weighed_nuisances_[object], sensitivities[object]);
   }
-  if (d == 0) return all;
-  Eigen::MatrixXd own = all.bottomRightCorner(d, d);
-  for (Eigen::Index i = 0; i < d; ++i)
-    own(i, i) +=
-        1 / std::pow(model_.parameters()[static_cast<std::size_t>(nuisances_.parameters[static_cast<std::size_t>(i)])]
-                         .sd_without_cause(),
-                     2);
-  const Eigen::MatrixXd cross = all.bottomLeftCorner(d, 1 + k);
-  return all.topLeftCorner(1 + k, 1 + k) - cross.transpose() * own.llt().solve(cross);
+  if (d == 0) return gram;
+  return gram - cross.transpose() * nuisance_factor_.solve(cross);
 }
 
 std::vector<std::vector<Eigen::MatrixXd>> movements_of(const ForwardModel& model, const std::vector<int>& discrepancies,

@@ -2,6 +2,8 @@
 #pragma once
 // What a diagnosis makes small: misfit against noise and structure (structured_misfit.h), with the priors, and with the
 // nuisance parameters integrated out.
+#include <Eigen/Cholesky>
+
 #include "evidence/fit/noise_model.h"
 #include "evidence/fit/parameter_fit.h"
 #include "evidence/fit/structured_misfit.h"
@@ -43,8 +45,7 @@ struct NuisanceParameters {
 class StructuredObjective : public FitObjective {
  public:
   StructuredObjective(const ForwardModel& model, const MisfitOfAll& misfit, std::size_t structure,
-                      NuisanceParameters nuisances)
-      : model_(model), misfit_(misfit), structure_(structure), nuisances_(std::move(nuisances)) {}
+                      const NuisanceParameters& nuisances);
   double value(const Predictions& residuals, const Eigen::VectorXd& u) const override;
   void quadratic(const Predictions& residuals, const std::vector<Sensitivities>& sensitivities,
                  const std::vector<int>& free, const Eigen::VectorXd& u, Eigen::VectorXd& g,
@@ -57,7 +58,8 @@ class StructuredObjective : public FitObjective {
   const ForwardModel& model_;
   const MisfitOfAll& misfit_;
   std::size_t structure_;
-  NuisanceParameters nuisances_;
+  std::vector<Sensitivities> weighed_nuisances_;  // each object: C^-1 N of their sensitivities N
+  Eigen::LLT<Eigen::MatrixXd> nuisance_factor_;   // of N^T C^-1 N and their priors
 };
 
 }  // namespace formwright

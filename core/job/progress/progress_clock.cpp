@@ -35,7 +35,11 @@ double sum_of(const TimeShares& shares, int begin, int end) {
 
 }  // namespace
 
-ProgressClock::ProgressClock(std::vector<TimeShares> runs) : runs_(std::move(runs)) {}
+ProgressClock::ProgressClock(std::vector<TimeShares> runs) : runs_(std::move(runs)), nothing_known_(runs_.empty()) {
+  if (!nothing_known_) return;
+  runs_.emplace_back();
+  runs_.back().fill(1.0 / static_cast<double>(runs_.back().size()));
+}
 
 void ProgressClock::report(double fraction, double now_s) {
   const int index = time_share_index(fraction);
@@ -85,7 +89,7 @@ ProgressClock::Estimate ProgressClock::at(double now_s) {
   if (!(weight > 1e-9)) return {passed_, std::nullopt};
   const double mean = sum / weight, variance = std::max(0.0, squares / weight - mean * mean), left_s = std::exp(mean);
   passed_ = std::clamp(now_s / (now_s + std::exp(sum_of_all / weight)), passed_, 1.0);
-  const bool agreed = std::sqrt(variance) <= max_deviation && largest > min_weight;
+  const bool agreed = !nothing_known_ && std::sqrt(variance) <= max_deviation && largest > min_weight;
   return {passed_, agreed && now_s >= min_elapsed_s ? std::optional(left_s) : std::nullopt};
 }
 

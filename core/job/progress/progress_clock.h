@@ -18,7 +18,8 @@ namespace formwright {
 /// simulations that were found again); they are left out of both runs.
 class ProgressClock {
  public:
-  /// `runs`: how earlier runs spent their time; at least one.
+  /// `runs`: how earlier runs spent their time. With none, the reported fraction is taken for the share of the time,
+  /// and no remaining time is given.
   explicit ProgressClock(std::vector<TimeShares> runs);
 
   /// The operation reports `fraction` (0 to 1) of its work; smaller ones than before are ignored.
@@ -45,6 +46,7 @@ class ProgressClock {
     double at_s = 0;
   };
   std::vector<TimeShares> runs_;
+  bool nothing_known_;
   std::vector<Entry> entered_{{}};  // hundredths that were reported, in order; the run is in the last one
   double passed_ = 0;
 };

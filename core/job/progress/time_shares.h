@@ -16,7 +16,7 @@ int time_share_index(double fraction);
 
 /// Of runs that were measured (usual_time_shares.cpp), on models, sizes and parameters that differ. `alike` is an
 /// operation of the catalog with its unusual switches (alike_runs.h); where none was measured with those, the
-/// operation's own; one even entry for an operation that was not measured.
+/// operation's own; empty for an operation that was not measured.
 std::vector<TimeShares> usual_time_shares(const std::string& alike);
 
 }  // namespace formwright

@@ -374,10 +374,6 @@ std::vector<TimeShares> usual_time_shares(const std::string& alike) {
     for (double& share : shares) share /= sum;
     runs.push_back(shares);
   }
-  if (runs.empty()) {
-    runs.emplace_back();
-    runs.back().fill(1.0 / static_cast<double>(runs.back().size()));
-  }
   return runs;
 }
 

@@ -14,7 +14,8 @@ namespace formwright {
 namespace {
 
 constexpr std::size_t refitted_singles = 8, refitted_pairs = 6, pair_anchors = 4, leader_count = 4;
-constexpr double out_of_linear_reach = 300;  // log evidence: linear models are wrong by less
+/// Of log evidence: linear models are wrong by less. About zero, those of a cause of one sign say little.
+constexpr double linear_error = 150, out_of_linear_reach = 300;
 constexpr FitOptions polishing_fit{8, 0.01, true};
 
 }  // namespace
@@ -151,17 +152,29 @@ void Explanations::refit_with(const std::vector<int>& causes, const PairGuess* g
   weigh_refit(refits_.back());
 }
 
+bool Explanations::has_one_sign(const std::vector<int>& causes) const {
+  for (const int cause : causes)
+    for (const int p : model_.causes()[static_cast<std::size_t>(cause)].parameters)
+      if (model_.parameters()[static_cast<std::size_t>(p)].one_sided()) return true;
+  return false;
+}
+
+bool Explanations::cannot_lead(const std::vector<int>& causes) const {
+  if (causes.empty() || pairs_) return false;
+  const double linear = std::max(screened(causes, false).log_evidence, screened(causes, true).log_evidence);
+  double fitted = -std::numeric_limits<double>::infinity();
+  for (const Hypothesis& h : hypotheses_) fitted = std::max(fitted, h.log_evidence);
+  const double leading = std::min(screened_.front().log_evidence, fitted);
+  return linear < leading - (has_one_sign(causes) ? out_of_linear_reach : linear_error);
+}
+
 std::optional<ParameterFit> Explanations::fit_from_nominal(const std::vector<int>& causes) {
   if (causes.size() > 1) return {};
-  bool one_sided = false;
   Eigen::VectorXd usual = model_.nominal();
   for (const int cause : causes)
-    for (const int p : model_.causes()[static_cast<std::size_t>(cause)].parameters) {
-      const ModelParameter& parameter = model_.parameters()[static_cast<std::size_t>(p)];
-      one_sided |= parameter.one_sided();
-      usual[p] = parameter.prior_sd;
-    }
-  if (one_sided) {
+    for (const int p : model_.causes()[static_cast<std::size_t>(cause)].parameters)
+      usual[p] = model_.parameters()[static_cast<std::size_t>(p)].prior_sd;
+  if (has_one_sign(causes)) {
     // At zero it has a derivative on one side only, and that says little: start at its usual strength.
     const Eigen::VectorXd halfway = within_ranges(model_, usual + 0.5 * base_.u);
     usual = within_ranges(model_, usual);
@@ -234,7 +247,10 @@ void Explanations::refit() {
     part = end;
   };
   const auto stage = [&](auto&& work) { fits(1, work); };
-  for (const auto& causes : singles) stage([&] { refit_with(causes); });
+  for (const auto& causes : singles)
+    stage([&] {
+      if (!cannot_lead(causes)) refit_with(causes);
+    });
   normalise(hypotheses_);
   std::vector<PairGuess> pairs;
   if (pairs_) fits(fits_of_search, [&] { pairs = promising_pairs(); });

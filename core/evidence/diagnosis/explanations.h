@@ -92,6 +92,11 @@ class Explanations {
                         std::vector<Sensitivities> known, const FitOptions& options);
   /// From where the linearised model has them, with the sensitivities it was made of; or from `guess`.
   void refit_with(const std::vector<int>& causes, const PairGuess* guess = nullptr);
+  /// One of their parameters is never negative.
+  bool has_one_sign(const std::vector<int>& causes) const;
+  /// Behind the linearised leader and the best fit so far by more than a linear model is wrong: not worth a fit, except
+  /// as part of a pair.
+  bool cannot_lead(const std::vector<int>& causes) const;
   /// Those with the most log evidence first.
   std::vector<const Refit*> likeliest_refits() const;
   /// Once more where a coarser simulation has it, unless it is out of reach or does nothing there.

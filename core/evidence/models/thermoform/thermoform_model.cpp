@@ -12,6 +12,8 @@ namespace {
 
 constexpr int fewest_triangles = 1000;   // of the cheaper model
 constexpr int max_triangles = 5000;      // of a model that has a finer one
+/// To choose among extensions: they differ by more than what a finer mesh changes.
+constexpr int choosing_triangles = 2500;
 constexpr std::size_t max_sheets = 200;  // kept at a time; about 0.2 MB each
 /// The simulation's own error of thickness, RMS, as a share of the sheet's: what a finer mesh or the other elastic law
 /// changes (docs/evidence.md, "Thickness").
@@ -121,6 +123,17 @@ const ForwardModel* ThermoformModel::finer() const {
     finer_ = std::make_unique<ThermoformModel>(objects_, std::move(fine));
   }
   return finer_.get();
+}
+
+const ThermoformModel& ThermoformModel::for_choosing() const {
+  if (options_.triangles <= choosing_triangles) return *this;
+  const std::scoped_lock lock(mutex_);
+  if (!for_choosing_) {
+    ThermoformModelOptions fewer = options_;
+    fewer.triangles = choosing_triangles;
+    for_choosing_ = std::make_unique<ThermoformModel>(objects_, std::move(fewer));
+  }
+  return *for_choosing_;
 }
 
 std::vector<SimulationExtension> ThermoformModel::extensions() const {

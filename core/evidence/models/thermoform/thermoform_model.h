@@ -61,6 +61,8 @@ class ThermoformModel : public ForwardModel {
   /// On twice the triangles, where these are no more than most are content with.
   const ForwardModel* finer() const override;
   std::vector<SimulationExtension> extensions() const override;
+  /// The same on no more triangles than it takes to choose among extensions; this one where it has no more.
+  const ThermoformModel& for_choosing() const;
   /// This, or what `names` make of it. What its set-up or profile has already is passed over.
   const ThermoformModel& extended_by(const std::vector<std::string>& names) const;
   const ThermoformModelOptions& options() const { return options_; }
@@ -93,7 +95,7 @@ class ThermoformModel : public ForwardModel {
   std::vector<std::vector<MeasuredThickness>> thickness_;  // of the measurements after those of places
   std::unique_ptr<const ThermoformModel> cheaper_;
   mutable std::mutex mutex_;
-  mutable std::unique_ptr<const ThermoformModel> finer_;
+  mutable std::unique_ptr<const ThermoformModel> finer_, for_choosing_;
   mutable std::map<std::string, std::unique_ptr<const ThermoformModel>> extended_;
   mutable std::vector<std::shared_ptr<const Bytes>> packed_moulds_;  // of the objects; null until a task needs them
   mutable std::map<std::string, std::shared_ptr<const FormedSheet>> sheets_;

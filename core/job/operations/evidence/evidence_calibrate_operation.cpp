@@ -111,7 +111,7 @@ OperationResult run_evidence_calibrate(const OperationCall& call, const Calibrat
   SimulationChoice choice;
   if (o.method == CalibrationMethod::fit) {
     const auto span = call.context.span(0.01, 0.3, "Choosing the simulation");
-    choice = choose_simulation(usual, call.context);
+    choice = choose_simulation(usual.for_choosing(), call.context);
   }
   const ThermoformModel& model = usual.extended_by(choice.taken());
   SimulationBag bag(model);

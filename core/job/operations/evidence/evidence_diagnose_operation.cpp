@@ -133,7 +133,7 @@ OperationResult run_evidence_diagnose(const OperationCall& call, const DiagnoseO
   }
   const SimulationChoice choice = [&] {
     const auto span = call.context.span(0.02, 0.25, "Choosing the simulation");
-    return choose_simulation(usual, call.context);
+    return choose_simulation(usual.for_choosing(), call.context);
   }();
   const ThermoformModel& model = usual.extended_by(choice.taken());
   SimulationBag bag(model);

@@ -22,10 +22,10 @@
 
 #include "base/data/json.h"
 #include "base/parallel.h"
+#include "bench/relief/picture_sheet.h"
 #include "formats/mesh_io.h"
 #include "geometry/repair/repair.h"
 #include "geometry/samples/samples.h"
-#include "imaging/picture/png_writer.h"
 #include "relief/appearance_energy.h"
 #include "relief/balanced_relief.h"
 #include "relief/baselines.h"
@@ -152,22 +152,6 @@ Made make(const Subject& subject, const ReliefOptions& view, const std::string& 
   return {result.u, processor_seconds() - start, result.steps};
 }
 
-/// Brightness under one light from the upper left, darker in front of nothing.
-void shade_into(Image& sheet, const NormalPicture& picture, int left) {
-  const Vec3 light = Vec3(-0.5, 0.6, 0.75).normalized();
-  for (int y = 0; y < picture.grid.rows; ++y)
-    for (int x = 0; x < picture.grid.columns; ++x) {
-      const std::size_t p = picture.at(y, x);
-      double level = 0.18;
-      if (picture.covered[p])
-        level = std::max(0.0, light.x() * static_cast<double>(picture.x[p]) +
-                                  light.y() * static_cast<double>(picture.y[p]) +
-                                  light.z() * static_cast<double>(picture.z[p]));
-      const auto grey = static_cast<std::uint8_t>(255 * std::sqrt(std::min(1.0, level)));
-      sheet.at(left + x, picture.grid.rows - 1 - y) = Rgba{grey, grey, grey, 255};
-    }
-}
-
 std::string processor_name() {
   std::ifstream file("/proc/cpuinfo");
   for (std::string line; std::getline(file, line);)
@@ -179,11 +163,9 @@ void write_pictures(const Arguments& a, const std::string& name, const std::vect
                     const Context& context) {
   const int width = pictures[0].grid.columns, gap = 8;
   Image sheet((width + gap) * static_cast<int>(pictures.size()) - gap, pictures[0].grid.rows, Rgba{255, 255, 255, 255});
-  for (std::size_t k = 0; k < pictures.size(); ++k) shade_into(sheet, pictures[k], static_cast<int>(k) * (width + gap));
-  std::filesystem::create_directories(a.pictures);
-  const Bytes png = write_png(sheet, 0, context);
-  std::ofstream(std::filesystem::path(a.pictures) / (name + ".png"), std::ios::binary)
-      .write(reinterpret_cast<const char*>(png.data()), static_cast<std::streamsize>(png.size()));
+  for (std::size_t k = 0; k < pictures.size(); ++k)
+    test::shade_into(sheet, pictures[k], {static_cast<int>(k) * (width + gap), 0});
+  test::write_sheet(sheet, a.pictures, name, context);
 }
 
 Json compare(const Arguments& a, const Subject& subject, const std::string& view, const std::string& percent,

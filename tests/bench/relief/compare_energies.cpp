@@ -24,6 +24,8 @@ using namespace formwright::test;
 constexpr const char *scale_figure = "3.4", *linearised_figure = "3.5", *curvature_figure = "3.6";
 constexpr int picture_vertices = 20'000, box_squares = 16;
 constexpr double picture_percent = 5, box_percent = 20;
+constexpr double near_pixel_factor = 7.1, far_pixel_factor = 4;  // of eye_grid: 304 pixels across
+constexpr double max_angle_deg = 60;                             // of the colours
 constexpr double no_damping = 1, half_damping = 0.5;
 constexpr double small_floor = 1e-2, tiny_floor = 1e-6;  // of the mean |H|
 
@@ -33,12 +35,11 @@ struct Output {
   Context context;
 
   void picture(const EnergyScene& scene, const std::string& name, const std::vector<const SolvedForm*>& shown,
-               double pixel_factor, double max_angle_deg, bool faceted = false) {
+               double pixel_factor, bool faceted = false) {
     if (!folder.empty()) write_sheet(scene.sheet(shown, pixel_factor, max_angle_deg, faceted), folder, name, context);
   }
-  const SolvedForm& add(const EnergyScene& scene, const char* figure, const SolvedForm& solved) {
+  void add(const EnergyScene& scene, const char* figure, const SolvedForm& solved) {
     rows.push_back(scene.row(figure, solved));
-    return solved;
   }
 };
 
@@ -62,14 +63,22 @@ void compare_scale(Output& out) {
                    ours = scene.solve("eq. (3.9)", scene.forms().proposed()),
                    ours_twice = scene.solve("eq. (3.9), slab scaled by 2", scene.forms().proposed(), 2);
   for (const SolvedForm* solved : {&here, &half, &twice, &ours, &ours_twice}) out.add(scene, scale_figure, *solved);
-  out.picture(scene, "scale", {&here, &twice, &ours}, 7.1, 60);
+  out.picture(scene, "scale", {&here, &twice, &ours}, near_pixel_factor);
 }
 
 void compare_linearised(Output& out) {
-  for (const double percent : {box_percent / 2, box_percent, 2 * box_percent}) {
-    ReliefOptions options = view_of(Projection::orthographic, percent);
+  struct View {
+    Projection projection;
+    double percent;
+    bool shown;
+  };
+  for (const View& view :
+       {View{Projection::orthographic, box_percent / 2, false}, View{Projection::orthographic, box_percent, true},
+        View{Projection::orthographic, 2 * box_percent, false}, View{Projection::perspective, box_percent, false}}) {
+    ReliefOptions options = view_of(view.projection, view.percent);
     options.direction = {-0.55, -0.5, -1};
-    const EnergyScene scene("box", rounded_box(box_squares, 0), options, out.context);
+    const bool near = view.projection == Projection::perspective;
+    const EnergyScene scene(near ? "box near" : "box", rounded_box(box_squares, 0), options, out.context);
     const EnergyForms& forms = scene.forms();
     const auto laplacian = [&](const Eigen::VectorXd& u) { return forms.updated(u); };
     const auto normals = [&](const Eigen::VectorXd& u) { return forms.updated_normals(u, small_floor); };
@@ -78,7 +87,7 @@ void compare_linearised(Output& out) {
                      of_normals = scene.iterated("eq. (3.6), L, A and H updated, damped", normals, half_damping),
                      ours = scene.solve("eq. (3.9)", forms.proposed());
     for (const SolvedForm* solved : {&updated, &damped, &of_normals, &ours}) out.add(scene, linearised_figure, *solved);
-    if (percent == box_percent) out.picture(scene, "linearised", {&of_normals, &updated, &ours}, 4, 60, true);
+    if (view.shown) out.picture(scene, "linearised", {&of_normals, &updated, &ours}, far_pixel_factor, true);
   }
   const EnergyScene bust("bust", make_sample("bust", 1500, out.context).mesh,
                          view_of(Projection::orthographic, box_percent), out.context);
@@ -98,7 +107,8 @@ void compare_curvature(Output& out) {
                      ours = scene.solve("eq. (3.9)", forms.proposed());
     for (const SolvedForm* solved : {&divided, &hardly_bounded, &ours}) out.add(scene, curvature_figure, *solved);
     out.rows.back()["curvature_range"] = forms.curvature_range(small_floor);
-    if (std::strcmp(sample, "bust") == 0) out.picture(scene, "curvature", {&divided, &hardly_bounded, &ours}, 4, 60);
+    if (std::strcmp(sample, "bust") == 0)
+      out.picture(scene, "curvature", {&divided, &hardly_bounded, &ours}, far_pixel_factor);
   }
 }
 

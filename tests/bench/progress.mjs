@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How far the remaining time that a running job gives can be relied on: long jobs of every craft, natively.
 //   node tests/bench/progress.mjs build/formwright [NAME...] [--trace FILE]
-//   node tests/bench/progress.mjs build/formwright [OPERATION...] --record core/job/progress/usual_time_shares.cpp
+//   node tests/bench/progress.mjs build/formwright [OPERATION | RUN...] --record core/job/progress/usual_time_shares.cpp
+// An operation that is named has all its known runs made anew; a known run that is named is added to those there are.
 // Prints for each job its seconds, the share of its run during which a remaining time was given, the share of those
 // moments at which it was within a factor of 1.5 of what the run then took, and where the shown fraction differed
 // most from the share of the time that had passed. --trace writes every message: seconds, fraction, stage, seconds left.
@@ -76,11 +77,15 @@ const recorded = {
   design_fish: design('fish', 40000, 30),
   design_pyramid: design('pyramid', 40000, 15),
   zipping_star: zipping('star', 2000),
-  zipping_t_shape: zipping('t_shape', 2000),
-  zipping_hemisphere: zipping('hemisphere', 2500),
+  zipping_heart: zipping('heart', 1200, 30),
+  zipping_wide_star: zipping('star', 2500, 30),
+  zipping_wide_heart: zipping('heart', 900, 40),
   diagnose_pyramid: diagnosing('evidence-diagnose', { triangles: 1500 }, 'pyramid', { heating_gradient_x: 0.5 }),
   diagnose_t_shape: diagnosing('evidence-diagnose', { triangles: 1000 }, 't_shape', { weak_vacuum: 0.4 }),
   diagnose_clean: diagnosing('evidence-diagnose', { triangles: 1500 }, 'pyramid', {}),
+  diagnose_cone: diagnosing('evidence-diagnose', { triangles: 1500 }, 'mountain', { thickness_wedge_x: 0.3 }),
+  diagnose_hemisphere: diagnosing('evidence-diagnose', { triangles: 1000 }, 'hemisphere', { heating_centre: 0.5 }),
+  diagnose_star: diagnosing('evidence-diagnose', { triangles: 1500 }, 'star', { mould_shift_x_mm: 1.5 }),
   diagnose_t_shape_without_pairs: diagnosing('evidence-diagnose', { triangles: 1500, pairs: false }, 't_shape', { scan_shift_x_mm: 1 }),
   diagnose_pyramid_without_pairs: diagnosing('evidence-diagnose', { triangles: 1000, pairs: false }, 'pyramid', { weak_vacuum: 0.5 }),
   diagnose_clean_without_pairs: diagnosing('evidence-diagnose', { triangles: 1500, pairs: false }, 'pyramid', {}),
@@ -90,18 +95,27 @@ const recorded = {
   forest_pillars: job('relief-forest', {}),
   forest_screens: job('relief-forest', { layout: 'screens' }),
   forest_fine: job('relief-forest', { seed: 2, pixel_mm: 0.8 }),
+  forest_grid: job('relief-forest', { layout: 'grid' }),
+  forest_wide_grid: job('relief-forest', { layout: 'grid', seed: 5, grid_columns: 6, grid_rows: 6 }),
   light_bust: light('bust', 60000),
   light_octopus: light('octopus', 40000, { thickness_mm: 8 }),
   light_cat_sky: light('cat', 40000, { light: 'overcast' }),
   light_bust_sky: light('bust', 60000, { light: 'overcast' }),
+  light_heart_sky: light('heart', 80000, { light: 'overcast', thickness_mm: 3 }),
   plan_points_pyramid: planPoints('pyramid', { triangles: 2500 }),
   plan_points_t_shape: planPoints('t_shape', { triangles: 2500, mark_count: 20 }),
+  plan_points_cone: planPoints('mountain', { triangles: 2500, mark_count: 6 }),
+  plan_points_cat: planPoints('cat', { triangles: 2000 }),
+  plan_points_octopus: planPoints('octopus', { triangles: 3000 }),
+  plan_points_fine: planPoints('pyramid', { triangles: 2500, mark_spacing_mm: 5 }),
   diagnose_sewn_star: diagnosingSewn('star', 1500, 1.03),
   diagnose_sewn_heart: diagnosingSewn('heart', 1200, 1.02),
   diagnose_sewn_star_small: diagnosingSewn('star', 1000, 0.98),
   calibrate_pyramid: diagnosing('evidence-calibrate', { triangles: 3000 }, 'pyramid', { young_modulus_pa: 3300000 }),
   calibrate_t_shape: diagnosing('evidence-calibrate', { triangles: 3000 }, 't_shape', { young_modulus_pa: 2500000 }),
   calibrate_hemisphere: diagnosing('evidence-calibrate', { triangles: 5000 }, 'hemisphere', { young_modulus_pa: 3000000 }),
+  calibrate_cone: diagnosing('evidence-calibrate', { triangles: 3000 }, 'mountain', { young_modulus_pa: 2500000 }),
+  calibrate_star: diagnosing('evidence-calibrate', { triangles: 4000 }, 'star', {}),
 };
 /** Other models, sizes and parameters: on these the remaining times are judged. */
 const judged = {
@@ -119,8 +133,8 @@ const judged = {
   zippable_design_cat: design('cat', 60000, 25),
   zippable_design_star: design('star', 60000, 15),
   zippable_design_heart: design('heart', 60000),
-  zippable_simulate_heart: zipping('heart', 1500),
-  zippable_simulate_wide_star: zipping('star', 3000, 30),
+  zippable_simulate_star: zipping('star', 2500, 25),
+  zippable_simulate_heart: zipping('heart', 1000, 35),
   evidence_diagnose_hemisphere: diagnosing('evidence-diagnose', { triangles: 1500 }, 'hemisphere', { scan_shift_x_mm: 1 }),
   evidence_diagnose_without_pairs: diagnosing('evidence-diagnose', { triangles: 1000, pairs: false }, 'hemisphere', { weak_vacuum: 0.5 }),
   evidence_diagnose_t_shape_without_pairs: diagnosing('evidence-diagnose', { triangles: 1500, pairs: false }, 't_shape', { heating_gradient_y: 0.4 }),
@@ -225,9 +239,10 @@ if (table) {
   const source = readFileSync(table, 'utf8');
   const at = source.indexOf('shares{') + 'shares{'.length;
   const end = source.indexOf('};', at);
-  const chosen = Object.values(recorded).filter(({ operation }) => names.length === 0 || names.includes(operation));
+  const anew = (operation) => names.length === 0 || names.includes(operation);
+  const chosen = Object.entries(recorded).flatMap(([name, message]) => (anew(message.operation) || names.includes(name) ? [message] : []));
   const rows = [...source.slice(at, end).matchAll(/^ *\{"([^"]+)",[^"]*?\}\},$/gm)]
-    .filter(([, alike]) => !chosen.some((message) => message.operation === alike.split(' ')[0]))
+    .filter(([, alike]) => !anew(alike.split(' ')[0]))
     .map(([row]) => row.trim());
   for (const message of chosen) {
     const { seconds, timed } = await runWithInputs(program, message);

@@ -71,7 +71,8 @@ Json one_case(const std::vector<std::string>& hidden, double level, double sigma
     Context calibration;
     const ThermoformModel usual_before(
         {make_object(static_cast<Mould>((static_cast<int>(mould) + 2) % 4), world, {}, observation, random)}, well);
-    const ThermoformModel& before = usual_before.extended_by(choose_simulation(usual_before.for_choosing(), calibration).taken());
+    const ThermoformModel& before =
+        usual_before.extended_by(choose_simulation(usual_before.for_choosing(), calibration).taken());
     SimulationBag before_bag(before);
     asked.profile = before.profile_at(calibrate(before_bag, calibration).u);
     for (const char* name : {"mould_shift_x_mm", "mould_shift_y_mm"}) asked.profile.parameters.erase(name);

@@ -10,8 +10,8 @@
 namespace formwright {
 namespace {
 
-constexpr int fewest_triangles = 1000;   // of the cheaper model
-constexpr int max_triangles = 5000;      // of a model that has a finer one
+constexpr int fewest_triangles = 1000;  // of the cheaper model
+constexpr int max_triangles = 5000;     // of a model that has a finer one
 /// To choose among extensions: they differ by more than what a finer mesh changes.
 constexpr int choosing_triangles = 2500;
 constexpr std::size_t max_sheets = 200;  // kept at a time; about 0.2 MB each

@@ -294,9 +294,8 @@ FormedResult form_sheet(std::shared_ptr<const MouldShape> shape, const Placement
     result.phase_end_s[2] = dynamics.time_s();
   }
   // Nothing lifts the sheet: what is above model and clamp has been blown out like a bubble and folded over.
-  // What stands between the vertices of a coarse sheet lifts them by half an edge.
-  const double edge_mm = std::sqrt(2 * o.clamp_opening_x_mm * o.clamp_opening_y_mm / o.triangles);
-  const double max_lift_mm = std::max(10.0, edge_mm);
+  // Sharp parts between the vertices of a coarse sheet may push single ones up, by far less.
+  const double max_lift_mm = 0.25 * std::min(o.clamp_opening_x_mm, o.clamp_opening_y_mm);
   if (dynamics.x().col(2).maxCoeff() >
       std::max(o.clamp_height_mm, contact->top_mm()) + o.sheet_thickness_mm + max_lift_mm)
     throw Error(

@@ -244,6 +244,7 @@ test('keyboard', async ({ page, counter }) => {
   await page.keyboard.press('?');
   await expect(page.getByRole('dialog', { name: 'All keys' })).toBeVisible();
   await page.keyboard.press('Escape');
+  await expect(page.getByRole('dialog')).toBeHidden();
   const choosing = page.waitForEvent('filechooser');
   await page.keyboard.press('Control+o');
   await (await choosing).setFiles(ball);

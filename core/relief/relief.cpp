@@ -297,7 +297,7 @@ Relief ReliefSolver::solve_within(const ReliefOptions& options, const DepthBound
                                   Context& context) {
   BoundedQpConstraints constraints = constraints_of(frame_, bounds);
   const double slab = (options.thickness_mm + options.carve_depth_mm) / options.width_mm;
-  if (options.appearance == Appearance::balanced && cut != nullptr)
+  if (options.appearance != Appearance::detail && cut != nullptr)
     throw Error(
         ErrorCode::invalid_input, "appearance",
         "On a base in steps, strips or parts the relief is made with the appearance \"detail\" only: choose it, take the parts as one surface, or choose another base.");
@@ -327,13 +327,16 @@ Relief ReliefSolver::solve_within(const ReliefOptions& options, const DepthBound
   BoundedQpOptions qp_options;
   qp_options.method = options.method;
   qp_options.violation_tolerance = 1e-9 * slab;
-  {
+  Eigen::VectorXd m;  // scales of the parts that move by themselves
+  if (options.appearance == Appearance::squashed) {
+    relief.u = linear_compression(frame_, bounds).cwiseMax(constraints.lower).cwiseMin(constraints.upper);
+  } else {
     const auto span =
         context.span(0, options.appearance == Appearance::detail ? 0.9 : 0.4, "Fitting into the thickness");
     relief.qp = solve_on_base(constraints, bounds, qp_options, context);
+    m = scales(constraints, relief.qp);
+    relief.u = settled(frame_, constraints, relief.qp.u, m);
   }
-  const Eigen::VectorXd m = scales(constraints, relief.qp);
-  relief.u = settled(frame_, constraints, relief.qp.u, m);
   if (options.appearance == Appearance::balanced) {
     const auto span = context.span(0.4, 0.9, "Restoring broad forms");
     relief.balanced_steps = balance(options, bounds, constraints, relief.u, context);

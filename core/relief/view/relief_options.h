@@ -62,11 +62,11 @@ struct EnumNames<SolidKind> {
   static constexpr std::array<std::string_view, 2> labels{"Filled", "Thick surface"};
 };
 
-enum class Appearance { detail, balanced };
+enum class Appearance { detail, balanced, squashed };
 template <>
 struct EnumNames<Appearance> {
-  static constexpr std::array<std::string_view, 2> names{"detail", "balanced"};
-  static constexpr std::array<std::string_view, 2> labels{"Crisp detail", "Detail and broad forms"};
+  static constexpr std::array<std::string_view, 3> names{"detail", "balanced", "squashed"};
+  static constexpr std::array<std::string_view, 3> labels{"Crisp detail", "Detail and broad forms", "Simply squashed"};
 };
 
 /// Of whatever solves reliefs and has such a member.
@@ -263,7 +263,7 @@ struct ReliefOptions {
           .advanced(),
       parameter(
           "appearance", &ReliefOptions::appearance, "Appearance",
-          "Crisp detail keeps fine detail best and flattens broad forms. Detail and broad forms keeps soft, large forms too, so that the relief looks more like the model; it takes about twice as long.")
+          "Crisp detail keeps fine detail best and flattens broad forms. Detail and broad forms keeps soft, large forms too, so that the relief looks more like the model; it takes about twice as long. Simply squashed scales depth evenly and optimises nothing: to compare with.")
           .group("Shape"),
       hidden_weight_parameter(&ReliefOptions::hidden_weight),
       depth_order_parameter(&ReliefOptions::depth_order),

@@ -294,6 +294,8 @@ export interface ViewportApi {
   setMode(mode: ViewMode): void;
   /** Where the divider stands, 0..1 across the viewport's free rectangle. */
   setSwipe(position: number): void;
+  /** What the two sides of the swipe are called from now on. */
+  setPartNames(names: readonly [original: string, relief: string]): void;
   setLight(light: LightDirection): void;
   /** Colours for 'error' mode, or (with `always`) for every mode; null is plain plaster. */
   setColourMapping(mapping: ColourMapping | null, always?: boolean): void;

@@ -190,6 +190,10 @@ export abstract class ViewportBase {
     this.invalidate();
   }
 
+  setPartNames(names: readonly [original: string, relief: string]): void {
+    this.furniture.setPartNames(names);
+  }
+
   protected invalidate(): void {
     if (this.statusNow.state === 'ready') this.loop.invalidate();
   }

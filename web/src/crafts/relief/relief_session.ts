@@ -27,6 +27,7 @@ import type { ReliefDocument, ReliefResult } from './relief_document';
 import { baseInputs, currentResult, relief, sameMesh, takeBase } from './relief_document';
 import { solverSeconds } from './report';
 import type { Shown } from './shown';
+import { SquashedRelief } from './squashed/squashed_relief';
 
 const shownOutputs = ['relief.ply', 'base.ply'];
 
@@ -69,6 +70,7 @@ export class ReliefSession extends RoomSession<ReliefDocument> {
   readonly light = new ReliefLight(this);
   readonly paint = new PaintSession(this);
   readonly pieces = new ReliefPieces(this);
+  readonly squashed = new SquashedRelief(this);
   readonly #previewed = signal<Measured | null>(null);
   readonly #previewMemory_mb = signal(0);
 
@@ -88,6 +90,7 @@ export class ReliefSession extends RoomSession<ReliefDocument> {
     this.light.startFollowing();
     this.paint.startFollowing();
     this.pieces.startFollowing();
+    this.squashed.startFollowing();
   }
 
   openFiles(files: readonly File[]): Promise<boolean> {

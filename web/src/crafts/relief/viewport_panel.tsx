@@ -25,6 +25,8 @@ import { PiecesBar } from './pieces/pieces_bar';
 import type { MadePieces } from './pieces/relief_pieces';
 import type { ReliefSession } from './relief_session';
 import type { LitRelief, Shown } from './shown';
+import { BesideChoice } from './squashed/beside_choice';
+import type { SquashedModel } from './squashed/squashed_relief';
 
 type ReliefMode = ViewMode | 'light' | 'pieces';
 
@@ -128,6 +130,7 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
         const painting = session.paint.open.value;
         session.light.open.value = mode.value === 'light' && !painting;
         session.pieces.open.value = mode.value === 'pieces' && !painting;
+        session.squashed.open.value = mode.value === 'swipe' && session.squashed.wanted.value && !painting;
         if (mode.value === 'pieces' && !session.pieces.possible.value) mode.value = 'relief';
         viewport.setColourMapping(mode.value === 'light' ? brightnessMapping : errorMapping);
         viewport.setMode(painting ? 'original' : drawnMode(mode.value));
@@ -153,6 +156,7 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
     return () => {
       made.value = null;
       session.light.open.value = session.paint.open.value = session.pieces.open.value = false;
+      session.squashed.open.value = false;
       onViewport(null);
       resize.disconnect();
       for (const end of stop) end();
@@ -207,6 +211,9 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
           />
         ) : null}
         {mode.value === 'pieces' ? <PiecesBar pieces={session.pieces} /> : null}
+        {mode.value === 'swipe' && shown && !session.paint.open.value && !session.pieces.possible.value ? (
+          <BesideChoice squashed={session.squashed} />
+        ) : null}
         {session.previews.running.value && session.model.original.value && shown === null ? (
           <p class="label-chip">
             <Icon name="clock" small /> Making the first preview
@@ -253,6 +260,7 @@ function keepDrawn(
   onRelief: (thickness_mm: number) => void,
 ): () => void {
   let drawnOriginal: { from: string; scale: number } | null = null;
+  let drawnSquashed: SquashedModel | null = null;
   let drawnRelief: Drawn = null;
   let drawnModel: string | null = null;
   const draw = () => {
@@ -261,14 +269,23 @@ function keepDrawn(
     if (original === null) {
       viewport.setOriginal(null);
       viewport.setRelief(null, null);
-      drawnOriginal = drawnRelief = drawnModel = null;
+      drawnOriginal = drawnRelief = drawnModel = drawnSquashed = null;
       return;
     }
     const fits = session.showsModel.value;
     const scale = session.drawnScale.value;
-    if (drawnOriginal?.from !== original.from) viewport.setOriginal(originalData(original.mesh, scale));
-    else if (drawnOriginal.scale !== scale) viewport.rescaleOriginal(scaled(original.mesh.positions, scale));
-    drawnOriginal = { from: original.from, scale };
+    // The last one stays until that of a new relief is made.
+    const squashed = fits && session.squashed.open.value ? session.squashed.made.value : null;
+    if (squashed !== drawnSquashed) viewport.setPartNames([squashed ? 'Squashed' : 'Original', 'Relief']);
+    if (squashed) {
+      if (squashed !== drawnSquashed) viewport.setOriginal(squashed.mesh);
+      drawnOriginal = null;
+    } else {
+      if (drawnOriginal?.from !== original.from) viewport.setOriginal(originalData(original.mesh, scale));
+      else if (drawnOriginal.scale !== scale) viewport.rescaleOriginal(scaled(original.mesh.positions, scale));
+      drawnOriginal = { from: original.from, scale };
+    }
+    drawnSquashed = squashed;
     if (shown === null || !fits) {
       if (drawnRelief) viewport.setRelief(null, null);
       drawnRelief = null;

@@ -93,6 +93,10 @@ export class Furniture {
     }
   }
 
+  setPartNames(names: readonly string[]): void {
+    for (const [i, tag] of this.tags.entries()) tag.textContent = names[i] ?? '';
+  }
+
   private placeTags(extent: Extent, width: number): void {
     const [original, relief] = this.tags;
     if (!original || !relief) return;

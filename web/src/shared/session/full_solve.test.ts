@@ -157,6 +157,14 @@ describe('a solve in the worker', () => {
     expect(room.document.value.pending?.job).toBe('job0');
   });
 
+  it('says what failed in the notes, whatever field it names', async () => {
+    const error = { code: 'could_not_solve', where: 'thickness_mm', message: 'Too thin.' } as const;
+    const solving = solveInFull(room);
+    run('native', 0).fail(new JobError(error));
+    await solving;
+    expect(room.problem.value?.message).toBe('Too thin.');
+  });
+
   it('is forgotten where it failed or was cancelled', async () => {
     const failing = solveInFull(room);
     run('native', 0).fail(new JobError({ code: 'could_not_solve', where: '', message: 'Too thin.' }));

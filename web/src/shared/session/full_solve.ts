@@ -125,7 +125,7 @@ async function solveWith<D extends RoomDocument>(session: RoomSession<D>, solve:
         throw thrown;
       }
     },
-    (error) => session.report(error, session.failedTitle),
+    (error) => session.reportAsked(error, session.failedTitle),
   );
   if (session.solvingFor === own) session.solvingFor = null;
 }
@@ -164,6 +164,6 @@ export async function outputOf<D extends RoomDocument>(
       );
       return bytes;
     },
-    (error) => session.report(error, `Could not make the ${label} file`),
+    (error) => session.reportAsked(error, `Could not make the ${label} file`),
   );
 }

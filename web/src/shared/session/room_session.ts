@@ -197,6 +197,13 @@ export abstract class RoomSession<D extends RoomDocument = RoomDocument> {
     else this.problem.value = { kind: 'solve', title, message: error.message };
   }
 
+  /** What a person asked for: said in the notes too, since its field may be out of sight, and the preview that
+   *  follows takes away what stands at the field. */
+  reportAsked(error: JobError, title: string): void {
+    this.report(error, title);
+    this.problem.value = { kind: 'solve', title, message: error.message };
+  }
+
   // ---- what is kept ----
 
   /** A result whose bytes cannot be read stays in the document, but counts as not made: it can only be made again. */

@@ -5,6 +5,7 @@ import {
   backend,
   ballObj,
   expect,
+  expectAccessible,
   fileOf,
   openModel,
   openPage,
@@ -134,4 +135,34 @@ test('following the view ends with the model it was followed for', async ({ page
   await page.getByLabel('Model or project file').setInputFiles(fileOf('ball.obj', ballObj()));
   await expect(page.getByText('ball.obj', { exact: true })).toBeVisible();
   await expect(page.getByRole('switch', { name: 'Follow the view' })).not.toBeChecked();
+});
+
+test('beside the relief stands the model, or the model simply squashed', async ({ page }) => {
+  test.skip(backend === 'mock', 'all that the mock makes is squashed');
+  await openSample(page, 'Bust');
+  await expect(strip(page, 'Preview up to date')).toBeVisible();
+  const view = page.getByRole('radiogroup', { name: 'View' });
+  const beside = page.getByRole('radiogroup', { name: 'Beside the relief' });
+  await view.getByRole('radio', { name: 'Relief' }).click();
+  await expect(beside).toHaveCount(0);
+  await view.getByRole('radio', { name: 'Swipe' }).click();
+  const names = page.locator('.fw-tag');
+  await expect(names).toHaveText(['Original', 'Relief']);
+  await beside.getByRole('radio', { name: 'Original' }).focus();
+  await page.keyboard.press('ArrowRight');
+  await expect(names).toHaveText(['Squashed', 'Relief']);
+  await expectAccessible(page, 'squashed');
+
+  // It follows the relief, is not one of its results, and gives way to the model again.
+  const thickness = page.getByRole('textbox', { name: 'Thickness' });
+  await thickness.fill('12');
+  await thickness.press('Enter');
+  await expect(strip(page, 'Preview up to date')).toBeVisible();
+  await expect(page.getByText('Squashing the model')).toHaveCount(0);
+  await expect(names).toHaveText(['Squashed', 'Relief']);
+  await solve(page);
+  await expect(names).toHaveText(['Squashed', 'Relief']);
+  await expect(page.getByRole('list', { name: 'Earlier results' }).getByRole('button')).toHaveCount(1);
+  await beside.getByRole('radio', { name: 'Original' }).click();
+  await expect(names).toHaveText(['Original', 'Relief']);
 });

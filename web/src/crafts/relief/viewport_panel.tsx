@@ -282,7 +282,8 @@ function keepDrawn(
       drawnOriginal = null;
     } else {
       if (drawnOriginal?.from !== original.from) viewport.setOriginal(originalData(original.mesh, scale));
-      else if (drawnOriginal.scale !== scale) viewport.rescaleOriginal(scaled(original.mesh.positions, scale));
+      else if (drawnOriginal.scale !== scale)
+        viewport.rescaleOriginal(scaled(original.mesh.positions, scale));
       drawnOriginal = { from: original.from, scale };
     }
     drawnSquashed = squashed;

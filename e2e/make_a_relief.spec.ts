@@ -148,7 +148,7 @@ test('beside the relief stands the model, or the model simply squashed', async (
   await view.getByRole('radio', { name: 'Swipe' }).click();
   const names = page.locator('.fw-tag');
   await expect(names).toHaveText(['Original', 'Relief']);
-  await beside.getByRole('radio', { name: 'Original' }).focus();
+  await beside.getByRole('radio', { name: 'Model', exact: true }).focus();
   await page.keyboard.press('ArrowRight');
   await expect(names).toHaveText(['Squashed', 'Relief']);
   await expectAccessible(page, 'squashed');
@@ -163,6 +163,6 @@ test('beside the relief stands the model, or the model simply squashed', async (
   await solve(page);
   await expect(names).toHaveText(['Squashed', 'Relief']);
   await expect(page.getByRole('list', { name: 'Earlier results' }).getByRole('button')).toHaveCount(1);
-  await beside.getByRole('radio', { name: 'Original' }).click();
+  await beside.getByRole('radio', { name: 'Model', exact: true }).click();
   await expect(names).toHaveText(['Original', 'Relief']);
 });

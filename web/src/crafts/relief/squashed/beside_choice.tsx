@@ -11,8 +11,8 @@ export function BesideChoice({ squashed }: { readonly squashed: SquashedRelief }
         floating
         label="Beside the relief"
         options={[
-          { value: 'model', label: 'Original' },
-          { value: 'squashed', label: 'Squashed' },
+          { value: 'model', label: 'Model' },
+          { value: 'squashed', label: 'Squashed model' },
         ]}
         value={squashed.wanted.value ? 'squashed' : 'model'}
         onChange={(value) => (squashed.wanted.value = value === 'squashed')}

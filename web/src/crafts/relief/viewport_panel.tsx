@@ -130,7 +130,8 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
         const painting = session.paint.open.value;
         session.light.open.value = mode.value === 'light' && !painting;
         session.pieces.open.value = mode.value === 'pieces' && !painting;
-        session.squashed.open.value = mode.value === 'swipe' && session.squashed.wanted.value && !painting;
+        session.squashed.open.value =
+          canStandBeside(session) && session.squashed.wanted.value && mode.value === 'swipe';
         if (mode.value === 'pieces' && !session.pieces.possible.value) mode.value = 'relief';
         viewport.setColourMapping(mode.value === 'light' ? brightnessMapping : errorMapping);
         viewport.setMode(painting ? 'original' : drawnMode(mode.value));
@@ -211,7 +212,7 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
           />
         ) : null}
         {mode.value === 'pieces' ? <PiecesBar pieces={session.pieces} /> : null}
-        {mode.value === 'swipe' && shown && !session.paint.open.value && !session.pieces.possible.value ? (
+        {mode.value === 'swipe' && canStandBeside(session) ? (
           <BesideChoice squashed={session.squashed} />
         ) : null}
         {session.previews.running.value && session.model.original.value && shown === null ? (
@@ -231,6 +232,14 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
     </div>
   );
 }
+
+/** A squashed model beside the relief: a relief in pieces has none. */
+const canStandBeside = ({ shown, paint, pieces }: ReliefSession): boolean =>
+  shown.value !== null && !paint.open.value && !pieces.possible.value;
+
+/** Of the same model the last one stays until that of a new relief is made. */
+const squashedBeside = ({ shown, squashed: { open, made } }: ReliefSession): SquashedModel | null =>
+  open.value && made.value?.of.from === shown.value?.from ? made.value : null;
 
 /** The models of a group, to be moved. */
 const areModelsShown = ({ group, paint }: ReliefSession): boolean =>
@@ -269,13 +278,13 @@ function keepDrawn(
     if (original === null) {
       viewport.setOriginal(null);
       viewport.setRelief(null, null);
+      viewport.setPartNames(['Original', 'Relief']);
       drawnOriginal = drawnRelief = drawnModel = drawnSquashed = null;
       return;
     }
     const fits = session.showsModel.value;
     const scale = session.drawnScale.value;
-    // The last one stays until that of a new relief is made.
-    const squashed = fits && session.squashed.open.value ? session.squashed.made.value : null;
+    const squashed = fits ? squashedBeside(session) : null;
     if (squashed !== drawnSquashed) viewport.setPartNames([squashed ? 'Squashed' : 'Original', 'Relief']);
     if (squashed) {
       if (squashed !== drawnSquashed) viewport.setOriginal(squashed.mesh);

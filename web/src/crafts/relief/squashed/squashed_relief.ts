@@ -87,6 +87,7 @@ export class SquashedRelief {
     } catch (thrown) {
       const error = asJobError(thrown);
       if (error.code === 'cancelled' || signal.aborted) return;
+      this.made.value = null; // the last one is of another relief
       this.problem.value = error.message;
     } finally {
       this.running.value = false;

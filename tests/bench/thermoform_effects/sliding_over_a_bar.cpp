@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A strip drawn over a round bar. Along the arc that touches, the tension of what slides falls by exp(-mu angle) (Euler,
-// Eytelwein). Prints by how much the simulated tension at the top of the bar is off, as a table for docs/thermoform.md.
+// A strip drawn over a round bar. Along the arc that touches, the tension of what slides falls by exp(-mu angle)
+// (Euler, Eytelwein). Prints by how much the simulated tension at the top of the bar is off, as a table for
+// docs/thermoform.md.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -66,8 +67,8 @@ struct Drawn {
   double tension_ratio;  // at the top, to that of what hangs free
 };
 
-/// The clamps go down beside the bar, `step_mm` at a time. Without Poisson's ratio a strip of St. Venant-Kirchhoff's law
-/// pulls as lambda (lambda^2 - 1), and keeps its width.
+/// The clamps go down beside the bar, `step_mm` at a time. Without Poisson's ratio a strip of St. Venant-Kirchhoff's
+/// law pulls as lambda (lambda^2 - 1), and keeps its width.
 Drawn draw_over_bar(double friction, int columns, double step_mm) {
   ThermoformOptions o;
   o.young_modulus_pa = 2e6;
@@ -86,7 +87,8 @@ Drawn draw_over_bar(double friction, int columns, double step_mm) {
   double moved = 0, step = step_mm;
   while (moved < depth_mm) {
     load.clamp_shift = Vec3(0, 0, -std::min(step, depth_mm - moved));
-    if (dynamics.step(-load.clamp_shift.z() / speed_mm_per_s, load, 10 * step_mm, context) == SheetDynamics::Outcome::done) {
+    if (dynamics.step(-load.clamp_shift.z() / speed_mm_per_s, load, 10 * step_mm, context) ==
+        SheetDynamics::Outcome::done) {
       moved -= load.clamp_shift.z();
       step = std::min(step_mm, 2 * step);
     } else {

@@ -55,7 +55,7 @@ class ReliefSolver {
 
   /// `base`: in view coordinates, of the same options. `painting`: its regions and depths count; its weights are those
   /// that the solver was made with.
-  /// Throws Error: invalid_input (see depth_bounds; the balanced appearance on a base in steps or parts),
+  /// Throws Error: invalid_input (see depth_bounds; any appearance but detail on a base in steps or parts),
   /// could_not_solve, cancelled.
   Relief solve(const ReliefOptions& options, const BaseSurface& base, Context& context, const Painting& painting = {});
   /// On a base in parts that move in groups: `bounds` as depth_bounds would give them for it. The appearance must be

@@ -300,6 +300,7 @@ SheetDynamics::Outcome SheetDynamics::step(double dt_s, const StepLoad& load, do
       const Float4& d = direction[static_cast<std::size_t>(i)];
       Vec3 delta(d[0], d[1], d[2]);
       if (held_[static_cast<std::size_t>(i)] == sliding) {
+        delta += friction_->not_back(i, (x.row(i) - from.row(i)).transpose() + delta);
         delta = slide(i, x.row(i).transpose(), delta, radius[static_cast<std::size_t>(i)]);
         // One that still goes to and fro, as between the plate and the model, is done for this step.
         if (iteration >= max_sliding_iterations && held_[static_cast<std::size_t>(i)] == sliding &&
@@ -349,7 +350,7 @@ SheetDynamics::Outcome SheetDynamics::step(double dt_s, const StepLoad& load, do
     begin_membrane_step();
     assemble(x_, std::numeric_limits<double>::infinity(), load, force, nullptr);
     points_.slide(sheet_.F, x_, friction_->coefficient(), friction_->faces_of());
-    friction_->decide(force, load.settling, held_);
+    friction_->decide(force, x_ - from, load.settling, held_);
     collect_free();
   }
   time_ += dt_s;

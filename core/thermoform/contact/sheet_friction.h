@@ -18,13 +18,19 @@ namespace formwright {
 /// What a vertex is doing: the values of HeldVertices.
 enum HeldState : char { moves_freely = 0, stuck = 1, stuck_in_this_step = 2, sliding = 3 };
 
-constexpr double slide_lag_s = 1e-3;
+/// The drag on what slides (N), against the direction of the pull at the beginning of the step, and its derivative by
+/// the way `slip_mm` in that direction. What goes the other way is not driven by its drag: that turns round within a
+/// fiftieth of a millimetre, and SheetFriction::not_back lets nothing go farther back in one step.
+struct Drag {
+  double force, stiffness;
+};
+Drag drag_of(double maximum, double slip_mm);
 
 class SheetFriction {
  public:
   /// `coefficient`: mu, above 0.
-  /// `stiffness`: of the sheet (N/mm), for the lag: what slides is also held back by stiffness times slide_lag_s times
-  /// its speed, so that short steps slide little and always end.
+  /// `stiffness`: of the sheet (N/mm), for the lag: what slides is also held back in proportion to its speed, stiffness
+  /// and area, so that short steps slide little and always end.
   SheetFriction(const SheetMesh& sheet, double coefficient, double stiffness);
 
   /// The surface's normal where a vertex touches; to be kept up to date.
@@ -34,10 +40,14 @@ class SheetFriction {
   /// surface: drag and lag into the force, nothing across, and a stiffness across that lets it go nowhere.
   void constrain(int vertex, const Vec3& slip_mm, double dt_s, Vec3& force, std::array<Float4, 3>& diagonal) const;
 
-  /// Who slides from now on, by the forces (n x 3, N) that act on the vertices besides those of the mould. While all is
-  /// `settling`, every time that a vertex starts to slide takes a larger force than the time before, as contacts that
-  /// rest grow firmer; without that a few in corners and webs would hop for ever.
-  void decide(const Positions& force, bool settling, HeldVertices& held);
+  /// What to add to a slip of `slip_mm` in this step so that the vertex goes back no farther than its drag takes to turn.
+  Vec3 not_back(int vertex, const Vec3& slip_mm) const;
+
+  /// Who slides from now on, by the forces (n x 3, N) that act on the vertices besides those of the mould, and by how far
+  /// they slid (n x 3, mm) in the step that ended. While all is `settling`, every time that a vertex starts to slide takes
+  /// a larger force than the time before, as contacts that rest grow firmer; without that a few in corners and webs would
+  /// hop for ever.
+  void decide(const Positions& force, const Positions& slip_mm, bool settling, HeldVertices& held);
 
   double coefficient() const { return coefficient_; }
   /// The triangles around each vertex.
@@ -46,8 +56,9 @@ class SheetFriction {
  private:
   double coefficient_, stiffness_;
   std::vector<char> clamped_;
-  std::vector<int> starts_;  // per vertex: how often it began to slide while all was settling
-  std::vector<Vec3> normal_, drag_;
+  std::vector<int> starts_;                // per vertex: how often it began to slide while all was settling
+  std::vector<double> area_mm2_, drag_;    // of the flat sheet; N
+  std::vector<Vec3> normal_, direction_;   // unit; the second of the pull along the surface
   std::shared_ptr<const std::vector<std::vector<int>>> faces_of_;  // shared: a step copies this object, to go back to
 };
 

@@ -16,6 +16,7 @@ constexpr double cg_tolerance = 0.1;  // of Newton's directions: the next iterat
 constexpr int max_cg_iterations = 400;
 constexpr int max_newton_iterations = 12;
 constexpr int max_sliding_iterations = 5;
+constexpr double min_point_radius = 0.1;  // of half a thickness: points must not pass through
 constexpr double settled_share = 0.05;  // of the step's limit: an increment this small ends the iteration
 constexpr double wrinkle_share =
     0.2;  // so much a few vertices may go on moving: squeezed triangles buckle back and forth
@@ -64,9 +65,10 @@ BlockMatrix make_matrix(const SheetMesh& sheet, const HingeBending* bending) {
   return {n, std::span(sheet.F.data(), static_cast<std::size_t>(sheet.F.size())), 3};
 }
 
-std::vector<Vec3> sharp_points(const MouldContact* contact, double edge_mm) {
+std::vector<Vec3> sharp_points(const MouldContact* contact, double edge_mm, double slip) {
   if (!contact) return {};
-  return contact->sharp_points(edge_mm, 0.1, 0.5 * edge_mm);
+  constexpr double allowed_mm = 0.1;
+  return contact->sharp_points(edge_mm, std::max(allowed_mm, point_reach(slip).rounded_edges * edge_mm), 0.5 * edge_mm);
 }
 
 }  // namespace
@@ -78,7 +80,7 @@ SheetDynamics::SheetDynamics(const SheetMesh& sheet, const ThermoformOptions& op
       contact_(std::move(contact)),
       membrane_(sheet.flat_mm, sheet.F, options.sheet_thickness_mm, material_of(options), variation_of(sheet, options)),
       strips_(sheet.F, faces_per_strip),
-      points_(sharp_points(contact_.get(), shortest_edge(sheet)), shortest_edge(sheet),
+      points_(sharp_points(contact_.get(), shortest_edge(sheet), options.slip), shortest_edge(sheet),
               50 * options.young_modulus_pa * 1e-6 * options.sheet_thickness_mm),
       cg_(static_cast<int>(sheet.flat_mm.rows())),
       edge_mm_(shortest_edge(sheet)),
@@ -196,7 +198,7 @@ int SheetDynamics::find_contacts(const Positions& from, Positions& to, const std
   std::vector<double>& until = until_;
   until.assign(held_.size(), 1);
   const std::size_t before = points_.contacts().size();
-  found += points_.find(sheet_.F, from, to, membrane_.thickness_mm(), held_, contact_->tolerance_mm(),
+  found += points_.find(sheet_.F, from, to, point_radius_mm_, held_, contact_->tolerance_mm(),
                         [&](int v) { return known_[static_cast<std::size_t>(v)].at(from.row(v).transpose()); });
   for (std::size_t c = before; c < points_.contacts().size(); ++c)
     for (int k = 0; k < 3; ++k) {
@@ -237,6 +239,9 @@ SheetDynamics::Outcome SheetDynamics::step(double dt_s, const StepLoad& load, do
   begin_membrane_step();
   std::vector<double> radius = vertex_thickness_mm(x_);
   for (double& r : radius) r *= 0.5;
+  point_radius_mm_ = membrane_.thickness_mm();
+  const double reach_mm = point_reach(options_.slip).sharp_edges * edge_mm_;
+  for (double& r : point_radius_mm_) r = std::max(min_point_radius * 0.5 * r, 0.5 * r - reach_mm);
   const Positions from = x_;
   const HeldVertices held_before = friction_ ? held_ : HeldVertices{};
   const std::optional<SheetFriction> friction_before = friction_ ? std::optional(*friction_) : std::nullopt;
@@ -300,7 +305,6 @@ SheetDynamics::Outcome SheetDynamics::step(double dt_s, const StepLoad& load, do
       const Float4& d = direction[static_cast<std::size_t>(i)];
       Vec3 delta(d[0], d[1], d[2]);
       if (held_[static_cast<std::size_t>(i)] == sliding) {
-        delta += friction_->not_back(i, (x.row(i) - from.row(i)).transpose() + delta);
         delta = slide(i, x.row(i).transpose(), delta, radius[static_cast<std::size_t>(i)]);
         // One that still goes to and fro, as between the plate and the model, is done for this step.
         if (iteration >= max_sliding_iterations && held_[static_cast<std::size_t>(i)] == sliding &&
@@ -349,6 +353,8 @@ SheetDynamics::Outcome SheetDynamics::step(double dt_s, const StepLoad& load, do
   if (friction_) {
     begin_membrane_step();
     assemble(x_, std::numeric_limits<double>::infinity(), load, force, nullptr);
+    points_.let_go(sheet_.F, x_, friction_->coefficient(),
+                   [&](int face) { return friction_->carried_by_corners(sheet_.F, face, held_); });
     points_.slide(sheet_.F, x_, friction_->coefficient(), friction_->faces_of());
     friction_->decide(force, x_ - from, load.settling, held_);
     collect_free();

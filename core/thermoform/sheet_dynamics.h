@@ -94,6 +94,7 @@ class SheetDynamics {
   BlockCg cg_;
   Positions x_, v_, guess_, last_iterate_;
   std::vector<double> mass_, contact_time_, until_;
+  std::vector<double> point_radius_mm_;  // per face: as near as sharp points come in this step
   HeldVertices held_, none_held_;  // values: HeldState
   std::vector<int> free_;
   std::vector<MouldContact::Known> known_;

@@ -16,7 +16,7 @@ namespace {
 
 using namespace thermoform_test;
 
-constexpr double tolerance_mm = 0.01, thickness_mm = 0.8;
+constexpr double tolerance_mm = 0.01, near_mm = 0.4;
 
 /// Distance of a point from a face at a moment of the step.
 double distance(const Triangles& F, int face, const Positions& from, const Positions& to, double t, const Vec3& q) {
@@ -37,7 +37,7 @@ void expect_every_point_met(unsigned seed, bool bounds_known) {
   for (int i = 0; i < 120; ++i) points.emplace_back(30 * unit(random) - 15, 30 * unit(random) - 15, 24 * unit(random));
   PointContacts contacts(points, 4, 1);
   const HeldVertices held(static_cast<std::size_t>(sheet.flat_mm.rows()), 0);
-  const std::vector<double> thickness(faces, thickness_mm);
+  const std::vector<double> radius(faces, near_mm);
   Positions from = shaken(sheet, 0.1, seed);
   from.col(2).array() += 27;
   const auto clear = [&](int v) {
@@ -57,11 +57,11 @@ void expect_every_point_met(unsigned seed, bool bounds_known) {
       to.row(i) += Vec3(0.2 * unit(random), -0.2 * unit(random), -sink * (0.5 + unit(random))).transpose();
     if (step % 4 == 1) {  // tried in vain
       const std::size_t before = contacts.contacts().size();
-      contacts.find(sheet.F, from, to + (to - from), thickness, held, tolerance_mm, clear);
+      contacts.find(sheet.F, from, to + (to - from), radius, held, tolerance_mm, clear);
       contacts.roll_back(before);
     }
     const std::size_t before = contacts.contacts().size();
-    contacts.find(sheet.F, from, to, thickness, held, tolerance_mm, clear);
+    contacts.find(sheet.F, from, to, radius, held, tolerance_mm, clear);
     for (std::size_t c = before; c < contacts.contacts().size(); ++c) {
       const PointContact& contact = contacts.contacts()[c];
       {
@@ -69,14 +69,14 @@ void expect_every_point_met(unsigned seed, bool bounds_known) {
         CHECK(met.insert(contact.point).second);
       }
       CHECK(distance(sheet.F, contact.face, from, to, contact.fraction,
-                     points[static_cast<std::size_t>(contact.point)]) < 0.5 * thickness_mm + tolerance_mm + 1e-9);
+                     points[static_cast<std::size_t>(contact.point)]) < near_mm + tolerance_mm + 1e-9);
     }
     for (int p = 0; p < static_cast<int>(points.size()); ++p) {
       if (met.count(p)) continue;
       for (int f = 0; f < static_cast<int>(faces); ++f)
         for (int k = 0; k <= 20; ++k) {
           INFO("step " << step << ", point " << p << ", face " << f);
-          REQUIRE(distance(sheet.F, f, from, to, 0.05 * k, points[static_cast<std::size_t>(p)]) >= 0.5 * thickness_mm);
+          REQUIRE(distance(sheet.F, f, from, to, 0.05 * k, points[static_cast<std::size_t>(p)]) >= near_mm);
         }
     }
     from = to;

@@ -186,7 +186,7 @@ void PointContacts::look(const Triangles& F, int face, const Positions& from, co
 }
 
 int PointContacts::find(const Triangles& F, const Positions& from, const Positions& to,
-                        std::span<const double> thickness_mm, const HeldVertices& held, double tolerance_mm,
+                        std::span<const double> radius_mm, const HeldVertices& held, double tolerance_mm,
                         const std::function<double(int)>& clear_mm) {
   if (points_.empty()) return 0;
   const auto faces = static_cast<std::size_t>(F.rows());
@@ -207,7 +207,7 @@ int PointContacts::find(const Triangles& F, const Positions& from, const Positio
   parallel_for(faces, grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t f = begin; f < end; ++f)
       if (due_mm_[f] <= travel)
-        look(F, static_cast<int>(f), from, to, 0.5 * thickness_mm[f], held, tolerance_mm, clear_mm,
+        look(F, static_cast<int>(f), from, to, radius_mm[f], held, tolerance_mm, clear_mm,
              lists[begin / grain]);
   });
   std::vector<Candidate> found;
@@ -261,18 +261,31 @@ Vec3 PointContacts::pull_of(const PointContact& contact, const Triangles& F, con
                       : pull;
 }
 
+PointContacts::Pull PointContacts::pull_apart(const PointContact& contact, const Triangles& F,
+                                              const Positions& x) const {
+  const Vec3 pull = pull_of(contact, F, x), normal = contact.slid ? contact.normal : face_normal(contact.face, F, x);
+  const double across = pull.dot(normal);
+  return {normal, pull - across * normal, across};
+}
+
+void PointContacts::let_go(const Triangles& F, const Positions& x, double friction,
+                           const std::function<bool(int)>& carried) {
+  std::erase_if(contacts_, [&](const PointContact& contact) {
+    return carried(contact.face) && pull_apart(contact, F, x).slides(friction);
+  });
+}
+
 void PointContacts::slide(const Triangles& F, const Positions& x, double friction,
                           const std::vector<std::vector<int>>& faces_of) {
   for (PointContact& contact : contacts_) {
-    const Vec3 here = on_face(contact, F, x), pull = pull_of(contact, F, x);
-    const Vec3 normal = contact.slid ? contact.normal : face_normal(contact.face, F, x);
-    const double across = pull.dot(normal), maximum = friction * std::abs(across);
-    const Vec3 along = pull - across * normal;
-    if (along.norm() <= maximum || along.norm() == 0) continue;
+    const Pull pull = pull_apart(contact, F, x);
+    if (!pull.slides(friction)) continue;
+    const Vec3 here = on_face(contact, F, x);
+    const double maximum = friction * std::abs(pull.across);
     // Which place of the sheet lies over the point now? It is held as far from the point as the old one was.
     const Vec3& point = points_[static_cast<std::size_t>(contact.point)];
-    const double stretched_mm = std::clamp(across / stiffness_, -0.05 * cell_mm_, 0.05 * cell_mm_);
-    const double reach_mm = (here - point).dot(normal) + stretched_mm;
+    const double stretched_mm = std::clamp(pull.across / stiffness_, -0.05 * cell_mm_, 0.05 * cell_mm_);
+    const double reach_mm = (here - point).dot(pull.normal) + stretched_mm;
     NearestPoint best;
     best.distance = std::numeric_limits<double>::infinity();
     for (int k = 0; k < 3; ++k)
@@ -286,10 +299,10 @@ void PointContacts::slide(const Triangles& F, const Positions& x, double frictio
     contact.face = best.face;
     contact.barycentric = best.barycentric;
     contact.normal = face_normal(best.face, F, x);
-    const Vec3 now = on_face(contact, F, x), beside = along - along.dot(contact.normal) * contact.normal;
+    const Vec3 now = on_face(contact, F, x), beside = pull.along - pull.along.dot(contact.normal) * contact.normal;
     contact.place = now + (reach_mm - (now - point).dot(contact.normal)) * contact.normal;
     if (beside.norm() > 0)
-      contact.place += std::min(maximum, along.norm()) / (share_beside * stiffness_ * beside.norm()) * beside;
+      contact.place += std::min(maximum, pull.along.norm()) / (share_beside * stiffness_ * beside.norm()) * beside;
   }
 }
 

@@ -3,6 +3,7 @@
 // Sharp points of the mould that have met the inside of a sheet triangle: each is glued there by a stiff spring, as
 // vertices are glued when they touch.
 #include <array>
+#include <cmath>
 #include <functional>
 #include <span>
 #include <vector>
@@ -27,10 +28,10 @@ class PointContacts {
   /// `points`: at rest, as the mould is. `cell_mm`: about an edge of the sheet's triangles. `stiffness`: N/mm.
   PointContacts(std::vector<Vec3> points, double cell_mm, double stiffness);
 
-  /// Finds points that faces of `F` come within half their thickness (m) of while their corners go straight from `from`
-  /// to `to`. Faces whose corners are all held are left out. `clear_mm(v)` is any lower bound of the distance of from's
+  /// Finds points that faces of `F` come within `radius_mm` (m) of while their corners go straight from `from` to `to`.
+  /// Faces whose corners are all held are left out. `clear_mm(v)` is any lower bound of the distance of from's
   /// vertex v from all points. New contacts are appended. Returns their number.
-  int find(const Triangles& F, const Positions& from, const Positions& to, std::span<const double> thickness_mm,
+  int find(const Triangles& F, const Positions& from, const Positions& to, std::span<const double> radius_mm,
            const HeldVertices& held, double tolerance_mm, const std::function<double(int vertex)>& clear_mm);
 
   /// Adds the springs' forces and, unless null, their stiffness.
@@ -39,6 +40,9 @@ class PointContacts {
   /// After a step that ended at `x`: where the pull along the face exceeds `friction` times that across it, the sheet
   /// slides over the point until it does not. `faces_of`: the triangles around a vertex.
   void slide(const Triangles& F, const Positions& x, double friction, const std::vector<std::vector<int>>& faces_of);
+
+  /// Before that: the points that slide under a face that is `carried` without them are let go, for good.
+  void let_go(const Triangles& F, const Positions& x, double friction, const std::function<bool(int face)>& carried);
 
   const std::vector<PointContact>& contacts() const { return contacts_; }
   std::size_t point_count() const { return points_.size(); }
@@ -49,6 +53,13 @@ class PointContacts {
  private:
   /// N, on the face, with the face's corners at `x`.
   Vec3 pull_of(const PointContact& contact, const Triangles& F, const Positions& x) const;
+  struct Pull {
+    Vec3 normal, along;
+    double across;
+    bool slides(double friction) const { return along.norm() > friction * std::abs(across); }
+  };
+  /// The same, along the face and across it.
+  Pull pull_apart(const PointContact& contact, const Triangles& F, const Positions& x) const;
   struct Candidate {
     double fraction;
     PointContact contact;

@@ -8,9 +8,10 @@
 namespace formwright {
 namespace {
 
-constexpr double lag_s_per_mm2 = 2.5e-7;
+constexpr double lag_s_per_mm2 = 2.5e-6;
 constexpr double max_backward_mm = 0.02;
-constexpr double rest_mm = 1e-3;         // what slides less in a step has come to rest
+constexpr double rest_mm = 1e-4;       // what slides less in a step has come to rest
+constexpr double min_same_side = 0.5;  // cosine between normals: surfaces that lean apart by less than 60 degrees
 constexpr float stiffness_across = 100;  // times the vertex's own
 constexpr double firmer_each_time = 0.5;
 
@@ -20,6 +21,12 @@ Drag drag_of(double maximum, double slip_mm) {
   if (slip_mm >= 0) return {maximum, 0};
   const double stiffness = 2 * maximum / max_backward_mm;
   return {std::max(maximum + stiffness * slip_mm, -maximum), stiffness};
+}
+
+PointReach point_reach(double slip) {
+  constexpr double min_slip = 0.05, full_slip = 0.25;
+  const double share = std::clamp((slip - min_slip) / (full_slip - min_slip), 0.0, 1.0);
+  return {0.15 * share, 0.1 * share};
 }
 
 SheetFriction::SheetFriction(const SheetMesh& sheet, double coefficient, double stiffness)
@@ -45,9 +52,12 @@ SheetFriction::SheetFriction(const SheetMesh& sheet, double coefficient, double 
   faces_of_ = std::move(faces_of);
 }
 
-Vec3 SheetFriction::not_back(int vertex, const Vec3& slip_mm) const {
-  const Vec3& d = direction_[static_cast<std::size_t>(vertex)];
-  return std::max(0.0, -max_backward_mm - slip_mm.dot(d)) * d;
+bool SheetFriction::carried_by_corners(const Triangles& F, int face, const HeldVertices& held) const {
+  for (int k = 0; k < 3; ++k) {
+    const auto v = static_cast<std::size_t>(F(face, k)), w = static_cast<std::size_t>(F(face, (k + 1) % 3));
+    if (held[v] == moves_freely || clamped_[v] || normal_[v].dot(normal_[w]) < min_same_side) return false;
+  }
+  return true;
 }
 
 void SheetFriction::constrain(int vertex, const Vec3& slip_mm, double dt_s, Vec3& force,

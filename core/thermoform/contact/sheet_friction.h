@@ -2,10 +2,15 @@
 #pragma once
 // Finite friction between sheet and mould. A vertex that touches sticks while what the sheet pulls along the surface is
 // at most mu times what presses across it; beyond, it slides: it moves along the surface only, against a drag of mu
-// times that force. Which vertices slide, and their drags, are decided at the end of every step, for the next one.
+// times that force. Which vertices slide, and their drags, are decided at the end of every step, for the next one. What
+// slid forward in a step goes on sliding: one that stops as soon as its pull equals its drag would take turns with its
+// neighbours, and all would be dragged too much.
 //
 // A vertex that the sheet pulls off the surface still adheres, and is dragged as if pressed with the same force, so
-// that mu -> infinity is the infinite adhesion of thesis 4.2.2.
+// that mu -> infinity is the infinite adhesion of thesis 4.2.2. For the same reason sharp points of the mould must not
+// push out the middle of a triangle that its corners carry: the two would hold each other, and both drag. Where the
+// sheet slides, points therefore count only where the mould is sharp at the scale of an edge, and may reach a little
+// into a triangle.
 #include <memory>
 #include <vector>
 
@@ -26,6 +31,14 @@ struct Drag {
 };
 Drag drag_of(double maximum, double slip_mm);
 
+/// How far the mould may reach into a triangle, in edges of the sheet, before its points count as sharp
+/// (MouldContact::sharp_points) and before such a point touches. 0 where nothing slides, and full from mu = 4 down, so
+/// that slip -> 0 is the sheet that sticks.
+struct PointReach {
+  double rounded_edges = 0, sharp_edges = 0;
+};
+PointReach point_reach(double slip);
+
 class SheetFriction {
  public:
   /// `coefficient`: mu, above 0.
@@ -40,8 +53,9 @@ class SheetFriction {
   /// surface: drag and lag into the force, nothing across, and a stiffness across that lets it go nowhere.
   void constrain(int vertex, const Vec3& slip_mm, double dt_s, Vec3& force, std::array<Float4, 3>& diagonal) const;
 
-  /// What to add to a slip of `slip_mm` in this step so that the vertex goes back no farther than its drag takes to turn.
-  Vec3 not_back(int vertex, const Vec3& slip_mm) const;
+  /// Whether the corners of a triangle all touch, and none of them a part of the mould that leans away from the others':
+  /// what reaches into such a triangle is rounded as its corners are, no tip.
+  bool carried_by_corners(const Triangles& F, int face, const HeldVertices& held) const;
 
   /// Who slides from now on, by the forces (n x 3, N) that act on the vertices besides those of the mould, and by how far
   /// they slid (n x 3, mm) in the step that ended. While all is `settling`, every time that a vertex starts to slide takes

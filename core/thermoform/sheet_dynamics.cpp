@@ -17,7 +17,7 @@ constexpr int max_cg_iterations = 400;
 constexpr int max_newton_iterations = 12;
 constexpr int max_sliding_iterations = 5;
 constexpr double min_point_radius = 0.1;  // of half a thickness: points must not pass through
-constexpr double settled_share = 0.05;  // of the step's limit: an increment this small ends the iteration
+constexpr double settled_share = 0.05;    // of the step's limit: an increment this small ends the iteration
 constexpr double wrinkle_share =
     0.2;  // so much a few vertices may go on moving: squeezed triangles buckle back and forth
 

@@ -95,7 +95,7 @@ class SheetDynamics {
   Positions x_, v_, guess_, last_iterate_;
   std::vector<double> mass_, contact_time_, until_;
   std::vector<double> point_radius_mm_;  // per face: as near as sharp points come in this step
-  HeldVertices held_, none_held_;  // values: HeldState
+  HeldVertices held_, none_held_;        // values: HeldState
   std::vector<int> free_;
   std::vector<MouldContact::Known> known_;
   double time_ = 0, mass_total_ = 0, last_move_ = 0, last_step_ = 0, edge_mm_ = 1, step_limit_mm_ = 1;

@@ -68,8 +68,8 @@ struct Drawn {
   double tension_ratio;  // at the top, to that of what hangs free
 };
 
-/// The clamps go down beside the bar, `step_mm` at a time. Without Poisson's ratio a strip of St. Venant-Kirchhoff's law
-/// pulls as lambda (lambda^2 - 1), and keeps its width.
+/// The clamps go down beside the bar, `step_mm` at a time. Without Poisson's ratio a strip of St. Venant-Kirchhoff's
+/// law pulls as lambda (lambda^2 - 1), and keeps its width.
 Drawn draw_over_bar(double friction, int columns, double step_mm, double depth_mm = 60) {
   ThermoformOptions o;
   o.young_modulus_pa = 2e6;
@@ -87,7 +87,8 @@ Drawn draw_over_bar(double friction, int columns, double step_mm, double depth_m
   double moved = 0, step = step_mm;
   while (moved < depth_mm) {
     load.clamp_shift = Vec3(0, 0, -std::min(step, depth_mm - moved));
-    if (dynamics.step(-load.clamp_shift.z() / speed_mm_per_s, load, 10 * step_mm, context) == SheetDynamics::Outcome::done) {
+    if (dynamics.step(-load.clamp_shift.z() / speed_mm_per_s, load, 10 * step_mm, context) ==
+        SheetDynamics::Outcome::done) {
       moved -= load.clamp_shift.z();
       step = std::min(step_mm, 2 * step);
     } else {

@@ -207,8 +207,7 @@ int PointContacts::find(const Triangles& F, const Positions& from, const Positio
   parallel_for(faces, grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t f = begin; f < end; ++f)
       if (due_mm_[f] <= travel)
-        look(F, static_cast<int>(f), from, to, radius_mm[f], held, tolerance_mm, clear_mm,
-             lists[begin / grain]);
+        look(F, static_cast<int>(f), from, to, radius_mm[f], held, tolerance_mm, clear_mm, lists[begin / grain]);
   });
   std::vector<Candidate> found;
   for (const auto& list : lists) found.insert(found.end(), list.begin(), list.end());

@@ -53,14 +53,14 @@ class SheetFriction {
   /// surface: drag and lag into the force, nothing across, and a stiffness across that lets it go nowhere.
   void constrain(int vertex, const Vec3& slip_mm, double dt_s, Vec3& force, std::array<Float4, 3>& diagonal) const;
 
-  /// Whether the corners of a triangle all touch, and none of them a part of the mould that leans away from the others':
-  /// what reaches into such a triangle is rounded as its corners are, no tip.
+  /// Whether the corners of a triangle all touch, and none of them a part of the mould that leans away from the
+  /// others': what reaches into such a triangle is rounded as its corners are, no tip.
   bool carried_by_corners(const Triangles& F, int face, const HeldVertices& held) const;
 
-  /// Who slides from now on, by the forces (n x 3, N) that act on the vertices besides those of the mould, and by how far
-  /// they slid (n x 3, mm) in the step that ended. While all is `settling`, every time that a vertex starts to slide takes
-  /// a larger force than the time before, as contacts that rest grow firmer; without that a few in corners and webs would
-  /// hop for ever.
+  /// Who slides from now on, by the forces (n x 3, N) that act on the vertices besides those of the mould, and by how
+  /// far they slid (n x 3, mm) in the step that ended. While all is `settling`, every time that a vertex starts to
+  /// slide takes a larger force than the time before, as contacts that rest grow firmer; without that a few in corners
+  /// and webs would hop for ever.
   void decide(const Positions& force, const Positions& slip_mm, bool settling, HeldVertices& held);
 
   double coefficient() const { return coefficient_; }
@@ -70,9 +70,9 @@ class SheetFriction {
  private:
   double coefficient_, stiffness_;
   std::vector<char> clamped_;
-  std::vector<int> starts_;                // per vertex: how often it began to slide while all was settling
-  std::vector<double> area_mm2_, drag_;    // of the flat sheet; N
-  std::vector<Vec3> normal_, direction_;   // unit; the second of the pull along the surface
+  std::vector<int> starts_;               // per vertex: how often it began to slide while all was settling
+  std::vector<double> area_mm2_, drag_;   // of the flat sheet; N
+  std::vector<Vec3> normal_, direction_;  // unit; the second of the pull along the surface
   std::shared_ptr<const std::vector<std::vector<int>>> faces_of_;  // shared: a step copies this object, to go back to
 };
 

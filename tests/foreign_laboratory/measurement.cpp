@@ -149,8 +149,9 @@ std::vector<MeasuredPoint> scan(const FormedSheet& sheet, const std::vector<Vect
 
 std::map<std::string, std::string> make_object(const Request& request) {
   // A stream of random numbers for each purpose: the sheet without fault has the same world, marks and noise.
-  const auto stream = [&](unsigned purpose) { return std::mt19937_64(8ULL * request.seed + purpose); };
-  auto of_world = stream(0), of_faults = stream(1), of_marks = stream(2), of_noise = stream(3);
+  const auto stream = [](unsigned seed, unsigned purpose) { return std::mt19937_64(8ULL * seed + purpose); };
+  auto of_world = stream(request.world_seed.value_or(request.seed), 0), of_faults = stream(request.seed, 1),
+       of_marks = stream(request.seed, 2), of_noise = stream(request.seed, 3);
   const Machine machine;
   const World world = draw_world(of_world);
   const Faults faults = draw_faults(request.cause, request.level, of_faults);

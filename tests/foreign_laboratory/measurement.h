@@ -2,6 +2,7 @@
 #pragma once
 // The formed sheet as a scan has it, and the folder of docs/measured_data.md.
 #include <map>
+#include <optional>
 #include <random>
 #include <string>
 #include <vector>
@@ -39,6 +40,7 @@ struct Request {
   std::string cause = "none";
   double level = 1;
   unsigned seed = 1;
+  std::optional<unsigned> world_seed;  // of the machine and its plastic, where they are those of another object
   Scan scan;
   FormingOptions forming;
 };

@@ -105,6 +105,23 @@ TEST_CASE("Measurement.TheSameRequestGivesTheSameBytesAndSaysWhatIsHidden") {
   CHECK(clean.at("sheet") == truth.at("sheet"));
 }
 
+TEST_CASE("Measurement.AnotherSheetOfTheSameWorldHasItsOwnMarksAndNoise") {
+  Request request;
+  request.forming = {.cells = 8, .mass_scale = 30};
+  request.scan.points = 20;
+  request.seed = 5;
+  const auto first = make_object(request);
+  request.seed = 77;
+  request.world_seed = 5;
+  const auto second = make_object(request);
+  const auto world = [](const auto& files) { return nlohmann::json::parse(files.at("truth.json")).at("world"); };
+  CHECK(world(first) == world(second));
+  CHECK(first.at("setup.json") == second.at("setup.json"));
+  CHECK(first.at("measured.csv") != second.at("measured.csv"));
+  request.world_seed.reset();
+  CHECK(world(make_object(request)) != world(first));
+}
+
 TEST_CASE("Measurement.HalfTheLevelIsHalfTheFault") {
   for (const std::string_view cause : cause_names) {
     std::mt19937_64 first(9), second(9);

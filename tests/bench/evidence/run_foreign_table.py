@@ -3,7 +3,7 @@
 """Forms objects in the foreign laboratory and diagnoses them, one line of JSON each; continues where it was stopped.
 
 run_foreign_table.py FOREIGN_LABORATORY FORMWRIGHT RESULTS.jsonl [--seeds N] [--noise MM] [--points N] [--folder DIR] [--jobs N] [--pairs] [--triangles N]
-                     [--only CAUSE] [--mould NAME]
+                     [--only CAUSE] [--mould NAME] [--known-machine]
 
 A round is one clean sheet of each mould and every cause once, strong; its seed decides which mould a cause is tried on, before anything is computed.
 Cases that RESULTS has are not done again, nor are failures hidden: they are lines with "error"."""
@@ -49,19 +49,36 @@ def run(command):
     return done.stdout
 
 
+def form(a, mould, cause, level, seed, out, *more):
+    run([a.laboratory, "--mould", mould, "--cause", cause, "--level", str(level), "--noise", str(a.noise), "--points", str(a.points), "--seed", str(seed), "--out", str(out),
+         *more])
+
+
+def machine_in_order(a, seed, mould, folder):
+    """The profile of the machine, calibrated with one sheet without fault over the next mould, with marks and noise of its own."""
+    moulds = names(a.laboratory)[0]
+    reference = folder / f"{mould}_in_order_{seed}"
+    form(a, moulds[(moulds.index(mould) + 1) % len(moulds)], "none", 1, 500_000 + seed, reference, "--world-seed", str(seed))
+    run([a.formwright, "evidence-calibrate", "--object", str(reference), "--out", str(reference / "calibrated"), "--triangles", str(a.triangles)])
+    return ["--profile", str(reference / "calibrated" / "profile.json")]
+
+
 def diagnosed(a, seed, mould, cause, level, folder):
     """One line: the hidden truth, what the diagnosis said and how long both took."""
-    line = {"seed": seed, "mould": mould, "cause": cause, "level": level, "noise_mm": a.noise, "points": a.points, "pairs": a.pairs, "triangles": a.triangles}
+    line = {"seed": seed, "mould": mould, "cause": cause, "level": level, "noise_mm": a.noise, "points": a.points, "pairs": a.pairs, "triangles": a.triangles, "known_machine": a.known_machine}
     item = folder / f"{mould}_{cause}_{seed}"
     try:
         start = time.monotonic()
-        run([a.laboratory, "--mould", mould, "--cause", cause, "--level", str(level), "--noise", str(a.noise), "--points", str(a.points), "--seed", str(seed), "--out",
-             str(item)])
+        form(a, mould, cause, level, seed, item)
         line["seconds_forming"] = round(time.monotonic() - start, 1)
         truth = json.loads((item / "truth.json").read_text())
         line |= {"in_the_list": truth["in_the_list"], "strength": truth["values"], "movement_mean_mm": truth["movement_mean_mm"]}
         start = time.monotonic()
-        run([a.formwright, "evidence-diagnose", "--object", str(item), "--out", str(item / "report"), "--separate", "off", "--pairs", "on" if a.pairs else "off", "--triangles", str(a.triangles)])
+        profile = machine_in_order(a, seed, mould, folder) if a.known_machine else []
+        line["seconds_calibrating"] = round(time.monotonic() - start, 1)
+        start = time.monotonic()
+        run([a.formwright, "evidence-diagnose", "--object", str(item), "--out", str(item / "report"), "--separate", "off", "--pairs", "on" if a.pairs else "off", "--triangles",
+             str(a.triangles), *profile])
         line["seconds_diagnosing"] = round(time.monotonic() - start, 1)
         found = json.loads((item / "report" / "diagnosis.json").read_text())
         line |= {key: found[key] for key in ("verdict", "reading", "doubtful", "doubts", "error_before_mm", "error_after_mm", "noise_floor_mm", "unexplained_before_mm",
@@ -87,14 +104,15 @@ def main():
     parser.add_argument("--folder", type=pathlib.Path, help="keeps the objects and reports here")
     parser.add_argument("--jobs", type=int, default=1, help="cases at a time")
     parser.add_argument("--pairs", action="store_true", help="also looks for two causes at once, which takes twice as long")
+    parser.add_argument("--known-machine", action="store_true", help="diagnoses with a profile from when the machine was in order")
     parser.add_argument("--only", help="this cause alone, or none")
     parser.add_argument("--mould", help="this mould alone")
     a = parser.parse_args()
     moulds, causes = names(a.laboratory)
     lines = [json.loads(line) for line in a.results.read_text().splitlines()] if a.results.exists() else []
-    done = {(line["seed"], line["mould"], line["cause"], line["level"], line["noise_mm"], line["points"], line["pairs"], line.get("triangles", 5000)) for line in lines if "error" not in line}
+    done = {(line["seed"], line["mould"], line["cause"], line["level"], line["noise_mm"], line["points"], line["pairs"], line.get("triangles", 5000), line.get("known_machine", False)) for line in lines if "error" not in line}
     todo = [case for case in cases(moulds, causes, a.seeds)
-            if (*case, a.noise, a.points, a.pairs, a.triangles) not in done and a.only in (None, case[2]) and a.mould in (None, case[1])]
+            if (*case, a.noise, a.points, a.pairs, a.triangles, a.known_machine) not in done and a.only in (None, case[2]) and a.mould in (None, case[1])]
     print(f"{len(done)} done, {len(todo)} to do", flush=True)
     lock = threading.Lock()
 

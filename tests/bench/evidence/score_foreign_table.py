@@ -67,10 +67,11 @@ def main():
     for name in a.files:
         with open(name) as file:
             for line in map(json.loads, filter(str.strip, file)):
-                latest[line["seed"], line["mould"], line["cause"], line["level"], line["noise_mm"], line["points"], line["pairs"]] = line
-    cases = sorted(latest.values(), key=lambda c: (c["cause"], c["mould"], c["seed"]))
+                latest[line["seed"], line["mould"], line["cause"], line["level"], line["noise_mm"], line["points"], line["pairs"], line.get("known_machine", False)] = line
+    everything = sorted(latest.values(), key=lambda c: (c["cause"], c["mould"], c["seed"]))
+    cases = [c for c in everything if not c.get("known_machine")]
+    known = [c for c in everything if c.get("known_machine")]
     strong = [c for c in cases if c["level"] == 1]
-    moulds = sorted({c["mould"] for c in cases})
     print("""# The diagnosis on sheets of another laboratory
 
 Sheets that `tests/foreign_laboratory` formed, with a simulation of another kind, and that `evidence-diagnose` was asked about.
@@ -85,7 +86,7 @@ Sheets that `tests/foreign_laboratory` formed, with a simulation of another kind
         return
     meshes = sorted({c.get("triangles", 5000) for c in cases})
     print(f"\nCases: {len(cases)}, {sum(c['cause'] == 'none' for c in cases)} of them clean. Triangles of the simulated sheet: {' or '.join(f'{n:,}' for n in meshes)}, and twice as many where a case was open.")
-    table("All cases", [("every mould", strong)] + [(mould, [c for c in strong if c["mould"] == mould]) for mould in moulds])
+    table("All cases", by_mould(strong))
     seen = [c for c in strong if c["cause"] == "none" or visible(c)]
     table("Only causes that the answer lists as visible", [("every mould", seen)])
     print("\nA cause counts as visible if it is among the three likeliest and found stronger than its `min_visible_strength`. This row is chosen by the answer itself: it is no "
@@ -104,6 +105,20 @@ Sheets that `tests/foreign_laboratory` formed, with a simulation of another kind
                   f"{statistics.median(c['noise_floor_mm'] for c in good if c['cause'] == 'none'):.2f} mm.")
         print(f"\nMedian wall time of a case, with whatever else the machine did: {statistics.median(c['seconds_forming'] for c in good if c['seconds_forming']):.0f} s to form, "
               f"{statistics.median(c['seconds_diagnosing'] for c in good):.0f} s to diagnose. Failed: {len(cases) - len(good)}.")
+    if known:
+        print("\n# With a profile from when the machine was in order\n\nOne sheet without fault over another mould, of the same machine and plastic, was measured and calibrated first "
+              "(`--known-machine`); that profile was given to the diagnosis.")
+        table("The same, machine known", by_mould([c for c in known if c["level"] == 1]))
+        list_answers(known)
+        print("\n# Without one")
+    list_answers(cases)
+
+
+def by_mould(cases):
+    return [("every mould", cases)] + [(mould, [c for c in cases if c["mould"] == mould]) for mould in sorted({c["mould"] for c in cases})]
+
+
+def list_answers(cases):
     print("\n## Every answer\n\n| hidden | strength | mould | moved mm | answer | likeliest causes | simulation with | error before → after, mm | seed |\n|---|---|---|---:|---|---|---|---|---:|")
     for c in cases:
         errors = f"{c['error_before_mm']:.2f} → {c['error_after_mm']:.2f}" if "error" not in c else ""

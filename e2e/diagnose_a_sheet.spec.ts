@@ -124,7 +124,7 @@ test(
 test('a calibration says what the data do not tell, and takes what it fitted along', async ({ page }) => {
   await openObject(page);
   await page.getByRole('radio', { name: 'Calibrate' }).click();
-  await page.getByRole('textbox', { name: 'Triangles' }).fill('500');
+  await page.getByRole('textbox', { name: 'Triangles' }).fill('1500');
   await page.getByRole('textbox', { name: 'Triangles' }).press('Enter');
   await run(page, 'Calibrate');
   await expect(strip(page, 'Calibration ready')).toBeVisible(seen);

@@ -6,110 +6,19 @@
 #include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include <cmath>
-#include <numbers>
 
-#include "thermoform/sheet_dynamics.h"
+#include "thermoform/contact/point_contacts.h"
+#include "thermoform/strip_over_bar.h"
 
 namespace formwright {
 namespace {
 using Catch::Matchers::WithinAbs;
 using Catch::Matchers::WithinRel;
 
-constexpr double bar_radius_mm = 20, bar_z_mm = 100, half_length_mm = 60, speed_mm_per_s = 100;
-
-/// A bar along y, finely faceted.
-TriangleMesh bar() {
-  constexpr int around = 720;
-  TriangleMesh mesh;
-  mesh.V.resize(2 * around, 3);
-  mesh.F.resize(2 * around, 3);
-  for (int k = 0; k < around; ++k) {
-    const double angle = 2 * std::numbers::pi * k / around;
-    for (int end = 0; end < 2; ++end)
-      mesh.V.row(2 * k + end) << bar_radius_mm * std::cos(angle), end == 0 ? -100 : 100,
-          bar_z_mm + bar_radius_mm * std::sin(angle);
-    const int a = 2 * k, b = 2 * ((k + 1) % around);
-    mesh.F.row(2 * k) << a, b + 1, b;
-    mesh.F.row(2 * k + 1) << a, a + 1, b + 1;
-  }
-  return mesh;
-}
-
-/// A strip along x, clamped at its two ends, four cells wide.
-SheetMesh strip(int columns) {
-  constexpr int rows = 4;
-  const double cell = 2 * half_length_mm / columns;
-  SheetMesh sheet;
-  sheet.columns = columns + 1;
-  sheet.rows = rows + 1;
-  sheet.flat_mm.resize((columns + 1) * (rows + 1), 2);
-  sheet.F.resize(2 * columns * rows, 3);
-  int face = 0;
-  for (int j = 0; j <= rows; ++j)
-    for (int i = 0; i <= columns; ++i) {
-      const int v = j * (columns + 1) + i;
-      sheet.flat_mm.row(v) << -half_length_mm + i * cell, (j - 0.5 * rows) * cell;
-      sheet.clamped.push_back(i == 0 || i == columns);
-      if (i == columns || j == rows) continue;
-      const int w = v + columns + 1;
-      if ((i + j) % 2 == 0) {
-        sheet.F.row(face++) << v, v + 1, w + 1;
-        sheet.F.row(face++) << v, w + 1, w;
-      } else {
-        sheet.F.row(face++) << v, v + 1, w;
-        sheet.F.row(face++) << v + 1, w + 1, w;
-      }
-    }
-  return sheet;
-}
-
-struct Drawn {
-  double wrap;           // radians from the top to where the strip leaves the bar
-  double tension_ratio;  // at the top, to that of what hangs free
-};
-
-/// The clamps go down beside the bar, `step_mm` at a time. Without Poisson's ratio a strip of St. Venant-Kirchhoff's
-/// law pulls as lambda (lambda^2 - 1), and keeps its width.
-Drawn draw_over_bar(double friction, int columns, double step_mm, double depth_mm = 60) {
-  ThermoformOptions o;
-  o.young_modulus_pa = 2e6;
-  o.poisson_ratio = 0;
-  o.creep_per_s = 0;
-  o.viscosity_s = 0;
-  o.slip = friction > 0 ? 1 / friction : 0;
-  const auto contact = std::make_shared<const MouldContact>(std::make_shared<const MouldShape>(bar()), Placement{},
-                                                            Vec2(400, 400), 0.01);
-  const SheetMesh sheet = strip(columns);
-  SheetDynamics dynamics(sheet, o, bar_z_mm + bar_radius_mm + 0.6, contact);
-  Context context;
-  StepLoad load;
-  load.gravity_mm_per_s2 = 0;
-  double moved = 0, step = step_mm;
-  while (moved < depth_mm) {
-    load.clamp_shift = Vec3(0, 0, -std::min(step, depth_mm - moved));
-    if (dynamics.step(-load.clamp_shift.z() / speed_mm_per_s, load, 10 * step_mm, context) ==
-        SheetDynamics::Outcome::done) {
-      moved -= load.clamp_shift.z();
-      step = std::min(step_mm, 2 * step);
-    } else {
-      step /= 2;
-      REQUIRE(step > 1e-4 * step_mm);
-    }
-  }
-  const auto tension = [&](int column) {
-    const int v = sheet.rows / 2 * sheet.columns + column;
-    const Vec3 edge = dynamics.x().row(v + 1) - dynamics.x().row(v);
-    const double lambda = edge.norm() / (2 * half_length_mm / columns);
-    return std::pair(lambda * (lambda * lambda - 1), std::atan2(-edge.z(), edge.x()));
-  };
-  const auto [free, angle] = tension(columns - 2);
-  return {angle, 0.5 * (tension(columns / 2).first + tension(columns / 2 - 1).first) / free};
-}
-
 TEST_CASE("SheetFriction.tension_over_a_bar_falls_as_euler_and_eytelwein_say") {
   for (const double friction : {0.05, 0.1, 0.25, 0.5})
     for (const int columns : {20, 40, 80}) {
-      const Drawn drawn = draw_over_bar(friction, columns, 0.5);
+      const StripOverBar drawn = draw_over_bar(friction, columns, 0.5);
       INFO(friction << ", " << columns << " columns, over " << drawn.wrap << " rad: " << drawn.tension_ratio);
       CHECK(drawn.wrap > 0.7);
       CHECK_THAT(drawn.tension_ratio, WithinRel(std::exp(-friction * drawn.wrap), 0.06));
@@ -131,6 +40,60 @@ TEST_CASE("SheetFriction.nothing_is_driven_back_by_its_drag") {
   const double between = -0.012, h = 1e-6;
   CHECK_THAT((drag_of(3, between + h).force - drag_of(3, between - h).force) / (2 * h),
              WithinRel(drag_of(3, between).stiffness, 1e-6));
+}
+
+/// One triangle in the plane z = 0, not clamped.
+SheetMesh one_triangle() {
+  SheetMesh sheet;
+  sheet.flat_mm.resize(3, 2);
+  sheet.flat_mm << 0, 0, 6, 0, 0, 6;
+  sheet.F.resize(1, 3);
+  sheet.F << 0, 1, 2;
+  sheet.clamped.assign(3, 0);
+  return sheet;
+}
+
+TEST_CASE("SheetFriction.corners_carry_a_triangle_where_all_touch_and_lean_alike") {
+  const SheetMesh sheet = one_triangle();
+  SheetFriction friction(sheet, 0.5, 1);
+  const HeldVertices touching(3, stuck);
+  CHECK(friction.carried_by_corners(sheet.F, 0, touching));
+  friction.normal(1) = Vec3(0.6, 0, 0.8);
+  CHECK(friction.carried_by_corners(sheet.F, 0, {stuck, sliding, stuck}));
+  CHECK_FALSE(friction.carried_by_corners(sheet.F, 0, {stuck, moves_freely, stuck}));
+  friction.normal(1) = Vec3(0.96, 0, 0.28);  // over an edge
+  CHECK_FALSE(friction.carried_by_corners(sheet.F, 0, touching));
+  SheetMesh at_the_rim = sheet;
+  at_the_rim.clamped[2] = 1;
+  CHECK_FALSE(SheetFriction(at_the_rim, 0.5, 1).carried_by_corners(sheet.F, 0, touching));
+}
+
+TEST_CASE("PointContacts.what_slides_under_a_carried_face_is_let_go") {
+  const SheetMesh sheet = one_triangle();
+  PointContacts points({Vec3(2, 2, 0)}, 6, 10);
+  Positions from(3, 3), to(3, 3);
+  from << 0, 0, 2, 6, 0, 2, 0, 6, 2;
+  to << 0, 0, 0.4, 6, 0, 0.4, 0, 6, 0.4;
+  const std::vector<double> radius_mm(1, 0.5);
+  REQUIRE(points.find(sheet.F, from, to, radius_mm, HeldVertices(3, moves_freely), 0.01, [](int) { return 0.0; }) == 1);
+  // Pressed on by 0.1 mm and drawn 0.02 mm aside: along the face a fifth of what presses.
+  to.col(0).array() += 0.02;
+  const auto carried = [](int) { return true; };
+  points.let_go(sheet.F, to, 0.3, carried);
+  points.let_go(sheet.F, to, 0.1, [](int) { return false; });
+  CHECK(points.contacts().size() == 1);
+  points.let_go(sheet.F, to, 0.1, carried);
+  CHECK(points.contacts().empty());
+}
+
+TEST_CASE("SheetFriction.points_reach_into_triangles_only_where_the_sheet_slides") {
+  CHECK(point_reach(0).sharp_edges == 0);
+  CHECK(point_reach(1e-9).rounded_edges == 0);
+  for (double slip = 0; slip < 1; slip += 0.001) {
+    CHECK(point_reach(slip + 0.001).rounded_edges - point_reach(slip).rounded_edges <= 1e-3);
+    CHECK(point_reach(slip + 0.001).sharp_edges >= point_reach(slip).sharp_edges);
+  }
+  CHECK(point_reach(20).rounded_edges == point_reach(0.25).rounded_edges);
 }
 
 }  // namespace

@@ -41,7 +41,8 @@ class PointContacts {
   /// slides over the point until it does not. `faces_of`: the triangles around a vertex.
   void slide(const Triangles& F, const Positions& x, double friction, const std::vector<std::vector<int>>& faces_of);
 
-  /// Before that: the points that slide under a face that is `carried` without them are let go, for good.
+  /// Before slide(): points under a face that is `carried` without them are let go, for good, where the pull along the
+  /// face exceeds `friction` times that across it.
   void let_go(const Triangles& F, const Positions& x, double friction, const std::function<bool(int face)>& carried);
 
   const std::vector<PointContact>& contacts() const { return contacts_; }
@@ -58,7 +59,7 @@ class PointContacts {
     double across;
     bool slides(double friction) const { return along.norm() > friction * std::abs(across); }
   };
-  /// The same, along the face and across it.
+  /// pull_of along the face and across it.
   Pull pull_apart(const PointContact& contact, const Triangles& F, const Positions& x) const;
   struct Candidate {
     double fraction;

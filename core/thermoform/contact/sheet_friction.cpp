@@ -8,11 +8,11 @@
 namespace formwright {
 namespace {
 
-constexpr double lag_s_per_mm2 = 2.5e-6;
-constexpr double max_backward_mm = 0.02;
-constexpr double rest_mm = 1e-4;         // what slides less in a step has come to rest
-constexpr double min_same_side = 0.5;    // cosine between normals: surfaces that lean apart by less than 60 degrees
-constexpr float stiffness_across = 100;  // times the vertex's own
+constexpr double lag_s_per_mm2 = 2.5e-6;  // small beside the drag: the bar loses no more tension with a tenth of it
+constexpr double max_backward_mm = 0.02;  // over which the drag turns round
+constexpr double rest_mm = 1e-4;          // what slides less in a step has come to rest
+constexpr double min_same_side = 0.5;     // cosine between normals: surfaces that lean apart by less than 60 degrees
+constexpr float stiffness_across = 100;   // times the vertex's own
 constexpr double firmer_each_time = 0.5;
 
 }  // namespace

@@ -23,12 +23,12 @@ namespace formwright {
 /// What a vertex is doing: the values of HeldVertices.
 enum HeldState : char { moves_freely = 0, stuck = 1, stuck_in_this_step = 2, sliding = 3 };
 
-/// The drag on what slides (N), against the direction of the pull at the beginning of the step, and its derivative by
-/// the way `slip_mm` in that direction. What goes the other way is not driven by its drag: that turns round within a
-/// fiftieth of a millimetre, and SheetFriction::not_back lets nothing go farther back in one step.
+/// The drag on a vertex (N), and its derivative (N/mm).
 struct Drag {
   double force, stiffness;
 };
+/// Against the direction in which the vertex was pulled at the beginning of the step; `slip_mm`: how far it has gone
+/// that way. What goes back is not driven by its drag: over the first fiftieth of a millimetre that turns round.
 Drag drag_of(double maximum, double slip_mm);
 
 /// How far the mould may reach into a triangle, in edges of the sheet, before its points count as sharp

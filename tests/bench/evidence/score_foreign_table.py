@@ -105,21 +105,19 @@ Sheets that `tests/foreign_laboratory` formed, with a simulation of another kind
                   f"{statistics.median(c['noise_floor_mm'] for c in good if c['cause'] == 'none'):.2f} mm.")
         print(f"\nMedian wall time of a case, with whatever else the machine did: {statistics.median(c['seconds_forming'] for c in good if c['seconds_forming']):.0f} s to form, "
               f"{statistics.median(c['seconds_diagnosing'] for c in good):.0f} s to diagnose. Failed: {len(cases) - len(good)}.")
+    list_answers("Every answer", cases)
     if known:
-        print("\n# With a profile from when the machine was in order\n\nOne sheet without fault over another mould, of the same machine and plastic, was measured and calibrated first "
-              "(`--known-machine`); that profile was given to the diagnosis.")
-        table("The same, machine known", by_mould([c for c in known if c["level"] == 1]))
-        list_answers(known)
-        print("\n# Without one")
-    list_answers(cases)
+        table("With a profile from when the machine was in order", by_mould([c for c in known if c["level"] == 1]))
+        print("\nOne sheet without fault over another mould, of the same machine and plastic, was measured and calibrated first (`--known-machine`); the diagnosis got that profile.")
+        list_answers("Every answer with a profile", known)
 
 
 def by_mould(cases):
     return [("every mould", cases)] + [(mould, [c for c in cases if c["mould"] == mould]) for mould in sorted({c["mould"] for c in cases})]
 
 
-def list_answers(cases):
-    print("\n## Every answer\n\n| hidden | strength | mould | moved mm | answer | likeliest causes | simulation with | error before → after, mm | seed |\n|---|---|---|---:|---|---|---|---|---:|")
+def list_answers(title, cases):
+    print(f"\n## {title}\n\n| hidden | strength | mould | moved mm | answer | likeliest causes | simulation with | error before → after, mm | seed |\n|---|---|---|---:|---|---|---|---|---:|")
     for c in cases:
         errors = f"{c['error_before_mm']:.2f} → {c['error_after_mm']:.2f}" if "error" not in c else ""
         mark = "" if c["cause"] == "none" or right(c) or not c.get("in_the_list", True) else " ✗"

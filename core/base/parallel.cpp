@@ -13,6 +13,10 @@
 
 #include "base/library_threads.h"
 
+#ifdef __linux__
+#include <sched.h>
+#endif
+
 namespace formwright {
 
 #if defined(__wasm__) && !defined(__wasm_atomics__)
@@ -35,6 +39,7 @@ ThreadLimit::~ThreadLimit() { thread_limit = before_; }
 
 #ifdef FORMWRIGHT_ONE_THREAD
 
+int available_processors() { return 1; }
 int thread_count() { return 1; }
 int allowed_threads() { return 1; }
 
@@ -167,8 +172,17 @@ class Pool {
 
 }  // namespace
 
+int available_processors() {
+#ifdef __linux__
+  // Of a machine shared by many tasks each is given some: threads that take turns on one wait for each other.
+  cpu_set_t own;
+  if (sched_getaffinity(0, sizeof own, &own) == 0) return std::max(CPU_COUNT(&own), 1);
+#endif
+  return std::max(static_cast<int>(std::thread::hardware_concurrency()), 1);
+}
+
 int thread_count() {
-  static const int count = std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, 16);
+  static const int count = std::min(available_processors(), 16);
   return count;
 }
 

@@ -6,7 +6,11 @@
 
 namespace formwright {
 
-/// Number of threads that parallel_for uses (at least 1).
+/// Processors that the calling thread may run on, at least 1: fewer than there are where a cluster or `taskset` says
+/// so.
+int available_processors();
+
+/// Number of threads that parallel_for uses, at least 1: the processors available at its first loop.
 int thread_count();
 
 /// Calls body(begin, end) on chunks that cover [0, count). Chunks are fixed by `count` and `grain`

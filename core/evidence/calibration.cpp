@@ -156,8 +156,9 @@ Calibration calibrate(SimulationBag& bag, Context& context, const Eigen::VectorX
     const auto span = context.span(0.05, 0.6, "Fitting");
     std::vector<Eigen::VectorXd> starts{model.nominal()};
     if (start.size() > 0) starts.push_back(start);
-    fit = fit_from_best(bag, *mean_distance_objective(model, largest_noise(model, result.noise)),
-                        model.base_parameters(), starts, {}, {}, context, "Fitting");
+    fit = fit_parameters(
+        bag, {mean_distance_objective(model, largest_noise(model, result.noise)), model.base_parameters(), starts},
+        context, "Fitting");
   }
   result.u = fit.u;
   result.predictions = fit.predictions;

@@ -3,6 +3,10 @@
 
 #include <catch2/catch_test_macros.hpp>
 
+#ifdef __linux__
+#include <sched.h>
+#endif
+
 #include <atomic>
 #include <chrono>
 #include <mutex>
@@ -113,6 +117,23 @@ TEST_CASE("ParallelFor.TheLimitHolds") {
   parallel_for(1000, 1, look);
   CHECK(seen.size() <= static_cast<std::size_t>(thread_count()));
 }
+
+#ifdef __linux__
+/// A task of a cluster may use one processor of many.
+TEST_CASE("AvailableProcessors.AreThoseTheThreadMayRunOn") {
+  cpu_set_t all;
+  REQUIRE(sched_getaffinity(0, sizeof all, &all) == 0);
+  CHECK(available_processors() == CPU_COUNT(&all));
+  int first = 0;
+  while (!CPU_ISSET(first, &all)) ++first;
+  cpu_set_t one;
+  CPU_ZERO(&one);
+  CPU_SET(first, &one);
+  REQUIRE(sched_setaffinity(0, sizeof one, &one) == 0);
+  CHECK(available_processors() == 1);
+  REQUIRE(sched_setaffinity(0, sizeof all, &all) == 0);
+}
+#endif
 
 }  // namespace
 }  // namespace formwright

@@ -100,6 +100,30 @@ TEST_CASE("Diagnosis.IntervalsHoldTheStrengthThoughTheModelIsAnother") {
   CHECK(inside >= cases - 2);  // 95 %, less two standard deviations of the count
 }
 
+/// What linear models put far behind is not fitted, unless it may be part of a pair; the answer is the same.
+TEST_CASE("Diagnosis.FitsOnlyWhatCanLead") {
+  ToyModel model(2000, 3);
+  Eigen::VectorXd truth = model.nominal();
+  truth[2] = 2.5;
+  model.measure(truth, 0.05, 33, 0.02);
+  Context context;
+  SimulationBag all_bag(model), bag(model);
+  const Diagnosis all = diagnose(all_bag, {}, context);
+  DiagnosisOptions alone;
+  alone.pairs = false;
+  const Diagnosis d = diagnose(bag, alone, context);
+  for (const CauseFinding& f : all.causes) CHECK(f.fitted);
+  CHECK(d.verdict == all.verdict);
+  CHECK(d.verdict == std::vector<int>{0});
+  CHECK(d.simulations < all.simulations);
+  for (const CauseFinding& f : d.causes) {
+    CHECK(f.fitted == (f.cause == 0));
+    if (f.fitted) continue;
+    CHECK(f.probability < 1e-9);
+    CHECK(f.low == f.high);
+  }
+}
+
 TEST_CASE("Diagnosis.FindsPairs") {
   ToyModel model(500);
   diagnosed_pair(model);

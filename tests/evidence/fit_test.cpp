@@ -42,8 +42,8 @@ TEST_CASE("ParameterFit.RecoversBaseParametersDespiteOutliers") {
   model.measure(truth, 0.02, 7, 0.05);
   SimulationBag bag(model);
   Context context;
-  const ParameterFit fit = fit_parameters(bag, *mean_distance_objective(model, 0.02), model.base_parameters(),
-                                          model.nominal(), {}, {}, context, "");
+  const ParameterFit fit = fit_parameters(
+      bag, {mean_distance_objective(model, 0.02), model.base_parameters(), {model.nominal()}}, context, "");
   CHECK_THAT(fit.u[0], WithinAbs(0.4, 0.01));
   CHECK_THAT(fit.u[1], WithinAbs(-0.7, 0.01));
   CHECK(bag.simulations() < 40);
@@ -59,9 +59,139 @@ TEST_CASE("ParameterFit.StaysWithinRanges") {
   Context context;
   FitOptions options;
   options.max_iterations = 60;
-  const ParameterFit fit = fit_parameters(bag, *mean_distance_objective(model, 0.01), model.base_parameters(),
-                                          model.nominal(), {}, options, context, "");
+  const ParameterFit fit = fit_parameters(
+      bag, {mean_distance_objective(model, 0.01), model.base_parameters(), {model.nominal()}, {}, options}, context,
+      "");
   CHECK_THAT(fit.u[1], WithinAbs(5, 1e-6));
+}
+
+/// Base parameters of a toy that was measured at (0.4, -0.7), from `start` of both.
+FitProblem toy_problem(const ToyModel& model, double start) {
+  Eigen::VectorXd u = model.nominal();
+  u.head(2).setConstant(start);
+  return {mean_distance_objective(model, 0.02), model.base_parameters(), {u}};
+}
+
+ToyModel measured_toy() {
+  ToyModel model(300);
+  Eigen::VectorXd truth = model.nominal();
+  truth.head(2) << 0.4, -0.7;
+  model.measure(truth, 0.02, 7, 0.05);
+  return model;
+}
+
+TEST_CASE("ParameterFit.IsTheSameInCompany") {
+  const ToyModel model = measured_toy();
+  Context context;
+  SimulationBag together(model);
+  std::vector<FitInProgress> fits;
+  for (const double start : {0.0, 1.0, -0.5}) fits.emplace_back(model, toy_problem(model, start));
+  run_fits({&together}, fits, context, "");
+  for (std::size_t i = 0; i < fits.size(); ++i) {
+    SimulationBag bag(model);
+    const ParameterFit alone = fit_parameters(bag, toy_problem(model, std::vector{0.0, 1.0, -0.5}[i]), context, "");
+    CHECK(fits[i].fit().u == alone.u);
+    CHECK(fits[i].fit().value == alone.value);
+    CHECK(fits[i].fit().sensitivities.front() == alone.sensitivities.front());
+    CHECK_THAT(alone.u[0], WithinAbs(0.4, 0.01));
+  }
+}
+
+TEST_CASE("ParameterFit.WhatIsHopelessStopsWhereItStands") {
+  const ToyModel model = measured_toy();
+  Context context;
+  SimulationBag bag(model);
+  std::vector<FitInProgress> fits;
+  for (const double start : {0.4, -1.0}) fits.emplace_back(model, toy_problem(model, start));
+  run_fits({&bag}, fits, context, "",
+           [&](const FitInProgress& fit) { return &fit == &fits[1] && fit.iterations() > 1; });
+  CHECK_THAT(fits[0].fit().u[0], WithinAbs(0.4, 0.01));
+  CHECK(fits[1].iterations() == 2);
+  const double at_start = mean_distance_objective(model, 0.02)
+                              ->value(residuals(model, *bag.run(toy_problem(model, -1).starts.front(), context, "")),
+                                      toy_problem(model, -1).starts.front());
+  CHECK(fits[1].fit().value < at_start);
+  CHECK(fits[1].fit().value > 2 * fits[0].fit().value);
+}
+
+/// A straight line has no more to it than its slope: one step, and one that finds nothing.
+TEST_CASE("ParameterFit.GoesStraightToTheEndOfALine") {
+  ToyModel model(300);
+  Eigen::VectorXd truth = model.nominal();
+  truth[1] = 0.5;
+  model.measure(truth, 0.02, 3);
+  SimulationBag bag(model);
+  Context context;
+  const std::vector<Sensitivities> slope =
+      sensitivities_at(bag, model.nominal(), *bag.run(model.nominal(), context, ""), {1}, context, "");
+  const int before = bag.simulations();
+  FitProblem problem{mean_distance_objective(model, 0.02), {1}, {model.nominal()}, slope, quick_fit};
+  const ParameterFit fit = fit_parameters(bag, problem, context, "");
+  CHECK_THAT(fit.u[1], WithinAbs(0.5, 0.01));
+  CHECK(bag.simulations() <= before + 3);
+}
+
+TEST_CASE("ParameterFit.TakesWrongSensitivitiesAfreshIfItMay") {
+  ToyModel model(300);
+  Eigen::VectorXd truth = model.nominal();
+  truth[1] = 0.5;
+  model.measure(truth, 0.02, 3);
+  SimulationBag bag(model);
+  Context context;
+  std::vector<Sensitivities> wrong =
+      sensitivities_at(bag, model.nominal(), *bag.run(model.nominal(), context, ""), {1}, context, "");
+  wrong.front().front() *= -1;
+  FitProblem problem{mean_distance_objective(model, 0.02), {1}, {model.nominal()}, wrong, {8, 0.01, true}};
+  CHECK_THAT(fit_parameters(bag, problem, context, "").u[1], WithinAbs(0.5, 0.01));
+}
+
+/// Has answers below a tilt of `max_tilt` only.
+class ToyWithAnEdge : public ToyModel {
+ public:
+  explicit ToyWithAnEdge(double max_tilt) : ToyModel(300), max_tilt_(max_tilt) {}
+  Eigen::MatrixXd predict(int object, const Eigen::VectorXd& u, const Context& context) const override {
+    if (u[1] > max_tilt_) throw Error(ErrorCode::could_not_solve, "", "Too steep.");
+    return ToyModel::predict(object, u, context);
+  }
+
+ private:
+  double max_tilt_;
+};
+
+TEST_CASE("ParameterFit.BeginsWhereThereIsAnAnswerOrSaysThatThereIsNone") {
+  ToyWithAnEdge model(0.5);
+  Eigen::VectorXd truth = model.nominal();
+  truth.head(2) << 0.2, -0.3;
+  model.measure(truth, 0.02, 5);
+  SimulationBag bag(model);
+  Context context;
+  FitProblem problem = toy_problem(model, 1);
+  CHECK_THROWS_AS(fit_parameters(bag, problem, context, ""), Error);
+  problem.starts.push_back(model.nominal());
+  CHECK_THAT(fit_parameters(bag, problem, context, "").u[1], WithinAbs(-0.3, 0.01));
+}
+
+/// One that has an answer at its start and none beside it ends, and leaves the others alone.
+TEST_CASE("ParameterFit.OneThatCannotGoOnLeavesTheOthers") {
+  class OnePlace : public ToyModel {
+   public:
+    OnePlace() : ToyModel(300) {}
+    Eigen::MatrixXd predict(int object, const Eigen::VectorXd& u, const Context& context) const override {
+      if (u[1] != 0) throw Error(ErrorCode::could_not_solve, "", "Too steep.");
+      return ToyModel::predict(object, u, context);
+    }
+  };
+  const ToyModel whole = measured_toy();
+  const OnePlace one;
+  SimulationBag whole_bag(whole), one_bag(one);
+  Context context;
+  std::vector<FitInProgress> fits;
+  fits.emplace_back(one, toy_problem(one, 0));
+  fits.emplace_back(whole, toy_problem(whole, 0));
+  run_fits({&one_bag, &whole_bag}, fits, context, "");
+  CHECK_FALSE(fits[0].has_answer());
+  CHECK(fits[0].why_not().has_value());
+  CHECK_THAT(fits[1].fit().u[0], WithinAbs(0.4, 0.01));
 }
 
 TEST_CASE("ParameterFit.ProbingSaysHowFarSecantsMiss") {

@@ -208,8 +208,13 @@ class Diagnostician {
 
   /// What was named stays; the base parameters are calibrated about it as those of the base model were.
   ParameterFit recalibrated(const ParameterFit& fit) {
-    ParameterFit result = fit_parameters(bag_, *mean_distance_objective(model_, tried_.softness()),
-                                         model_.base_parameters(), fit.u, {}, {}, context_, fitting_stage);
+    const std::vector<int> base = model_.base_parameters();
+    ParameterFit result = fit_parameters(bag_,
+                                         {mean_distance_objective(model_, tried_.softness()),
+                                          base,
+                                          {fit.u},
+                                          sensitivities_of(base, fit.sensitivities, fit.free)},
+                                         context_, fitting_stage);
     for (std::size_t a = result.free.size(); a < fit.free.size(); ++a) {
       result.free.push_back(fit.free[a]);
       for (std::size_t object = 0; object < result.sensitivities.size(); ++object)

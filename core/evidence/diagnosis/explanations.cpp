@@ -14,9 +14,6 @@ namespace formwright {
 namespace {
 
 constexpr std::size_t refitted_singles = 8, refitted_pairs = 6, pair_anchors = 4, leader_count = 4;
-/// Of log evidence: linear models are wrong by less. About zero, those of a cause of one sign say little.
-constexpr double linear_error = 150, out_of_linear_reach = 300;
-constexpr FitOptions polishing_fit{8, 0.01, true};
 
 }  // namespace
 
@@ -51,8 +48,8 @@ void Explanations::calibrate(const Eigen::VectorXd& start) {
   const auto rest = context_.span(0.05, 1, "Calibrating");
   std::vector<Eigen::VectorXd> starts{model_.nominal()};
   if (start.size() > 0) starts.push_back(start);
-  base_ = fit_from_best(bag_, *mean_distance_objective(model_, softness()), model_.base_parameters(), starts, {}, {},
-                        context_, "Calibrating");
+  base_ = fit_parameters(bag_, {mean_distance_objective(model_, softness()), model_.base_parameters(), starts},
+                         context_, "Calibrating");
   estimate_noise_about(base_.predictions);
 }
 
@@ -84,6 +81,7 @@ void Explanations::screen() {
 }
 
 std::vector<Sensitivities> Explanations::usual_sensitivities() {
+  if (coarser_ != nullptr) return coarser_->usual_sensitivities();
   return at_usual_strengths(bag_, at_nominal_, nominal_sensitivities_, context_, "Predicting the held-out data");
 }
 
@@ -123,88 +121,6 @@ std::size_t Explanations::nearest_size(double structure) const {
   return best;
 }
 
-ParameterFit Explanations::fit_from(const std::vector<int>& causes, const std::vector<Eigen::VectorXd>& starts,
-                                    std::vector<Sensitivities> known, const FitOptions& options) {
-  const std::vector<int> free = model_.base_and(causes);
-  const StructuredObjective objective(model_, *misfit_, nearest_size(model_.known_misfit()), nuisances(causes));
-  return fit_from_best(bag_, objective, free, starts, std::move(known), options, context_, fitting_stage);
-}
-
-void Explanations::refit_with(const std::vector<int>& causes, const PairGuess* guess) {
-  const Hypothesis& plain = screened(causes, false);
-  const Hypothesis& rough = screened(causes, true);
-  const Hypothesis& start = plain.probability >= rough.probability ? plain : rough;
-  const std::vector<int> free = model_.base_and(causes);
-  std::vector<Eigen::VectorXd> starts{base_.u, towards(model_, free, base_.u, start.u)};
-  if (guess != nullptr) starts.push_back(guess->u);
-  for (const auto& r : refits_)  // a pair may start from what its parts are like alone
-    if (causes.size() == 2 && r.causes.size() == 1 && (r.causes[0] == causes[0] || r.causes[0] == causes[1]))
-      starts.push_back(r.fit.u);
-  refits_.push_back(
-      {fit_from(causes, starts,
-                guess != nullptr ? guess->sensitivities : sensitivities_of(free, sensitivities_, columns_), quick_fit),
-       causes,
-       {}});
-  if (auto other = fit_from_nominal(causes)) {
-    if (other->value < refits_.back().fit.value) std::swap(refits_.back().fit, *other);
-    refits_.back().alternative = std::move(other);
-  }
-  weigh_refit(refits_.back());
-}
-
-bool Explanations::has_one_sign(const std::vector<int>& causes) const {
-  for (const int cause : causes)
-    for (const int p : model_.causes()[static_cast<std::size_t>(cause)].parameters)
-      if (model_.parameters()[static_cast<std::size_t>(p)].one_sided()) return true;
-  return false;
-}
-
-bool Explanations::cannot_lead(const std::vector<int>& causes) const {
-  if (causes.empty() || pairs_) return false;
-  const double linear = std::max(screened(causes, false).log_evidence, screened(causes, true).log_evidence);
-  double fitted = -std::numeric_limits<double>::infinity();
-  for (const Hypothesis& h : hypotheses_) fitted = std::max(fitted, h.log_evidence);
-  const double leading = std::min(screened_.front().log_evidence, fitted);
-  return linear < leading - (has_one_sign(causes) ? out_of_linear_reach : linear_error);
-}
-
-std::optional<ParameterFit> Explanations::fit_from_nominal(const std::vector<int>& causes) {
-  if (causes.size() > 1) return {};
-  Eigen::VectorXd usual = model_.nominal();
-  for (const int cause : causes)
-    for (const int p : model_.causes()[static_cast<std::size_t>(cause)].parameters)
-      usual[p] = model_.parameters()[static_cast<std::size_t>(p)].prior_sd;
-  if (has_one_sign(causes)) {
-    // At zero it has a derivative on one side only, and that says little: start at its usual strength.
-    const Eigen::VectorXd halfway = within_ranges(model_, usual + 0.5 * base_.u);
-    usual = within_ranges(model_, usual);
-    if (!bag_.run(usual, context_, fitting_stage) && !bag_.run(halfway, context_, fitting_stage)) return {};
-    return fit_from(causes, {usual, halfway}, {}, quick_fit);
-  }
-  Hypothesis h = screened(causes, false);
-  weigh(model_, about_nominal_, columns_, model_.nominal(), h);
-  if (h.log_evidence < screened_.front().log_evidence - out_of_linear_reach) return {};
-  const std::vector<int> free = model_.base_and(causes);
-  return fit_from(causes, {model_.nominal(), towards(model_, free, model_.nominal(), h.u)},
-                  sensitivities_of(free, nominal_sensitivities_, columns_), quick_fit);
-}
-
-void Explanations::polish(Refit& refit) {
-  std::vector<Eigen::VectorXd> starts{refit.fit.u};
-  for (const Refit& larger : refits_) {
-    if (larger.causes.size() <= refit.causes.size() ||
-        !std::includes(larger.causes.begin(), larger.causes.end(), refit.causes.begin(), refit.causes.end()))
-      continue;
-    Eigen::VectorXd u = larger.fit.u;
-    for (std::size_t p = 0; p < model_.parameters().size(); ++p)
-      if (std::find(refit.fit.free.begin(), refit.fit.free.end(), static_cast<int>(p)) == refit.fit.free.end())
-        u[static_cast<Eigen::Index>(p)] = 0;
-    starts.push_back(u);
-  }
-  refit.fit = fit_from(refit.causes, starts, {}, polishing_fit);
-  weigh_refit(refit);
-}
-
 void Explanations::weigh_refit(const Refit& refit) {
   const NuisanceParameters other = nuisances(refit.causes);
   const std::vector<int> columns = joined(refit.fit.free, other.parameters);
@@ -230,33 +146,38 @@ void Explanations::renew_noise() {
 
 void Explanations::refit() {
   const auto span = context_.span(0.2, 0.75, fitting_stage);
-  std::vector<std::vector<int>> singles{{}};
+  std::vector<std::vector<int>> singles;
   for (const Hypothesis& h : screened_)
     if (h.causes.size() == 1 && std::find(singles.begin(), singles.end(), h.causes) == singles.end() &&
-        singles.size() <= refitted_singles)
+        singles.size() < refitted_singles)
       singles.push_back(h.causes);
-  constexpr std::size_t fits_of_search = 16;  // what the search for pairs takes, in fits
-  const auto parts =
-      static_cast<double>(singles.size() + (pairs_ ? fits_of_search + refitted_pairs : 0) + 2 * leader_count);
-  double part = 0;
-  const auto fits = [&](std::size_t count, auto&& work) {
-    const double end = part + static_cast<double>(count);
-    // More leaders may have to be polished than were counted on.
-    const auto step = context_.span(std::min(1.0, part / parts), std::min(1.0, end / parts), fitting_stage);
-    work();
-    part = end;
-  };
-  const auto stage = [&](auto&& work) { fits(1, work); };
-  for (const auto& causes : singles)
-    stage([&] {
-      if (!cannot_lead(causes)) refit_with(causes);
-    });
+  constexpr double leader_end = 0.2, singles_end = 0.5, search_end = 0.7, pairs_end = 0.8;
+  const double none_searched_end = pairs_ ? singles_end : pairs_end;
+  std::vector<std::vector<int>> first{{}};
+  if (!singles.empty()) first.push_back(singles.front());
+  {
+    const auto part = context_.span(0, leader_end, fitting_stage);
+    refit_singles(first);
+  }
+  std::erase_if(singles, [&](const std::vector<int>& causes) { return is_refitted(causes) || cannot_lead(causes); });
+  {
+    const auto part = context_.span(leader_end, none_searched_end, fitting_stage);
+    refit_singles(singles);
+  }
   normalise(hypotheses_);
-  std::vector<PairGuess> pairs;
-  if (pairs_) fits(fits_of_search, [&] { pairs = promising_pairs(); });
-  for (const PairGuess& pair : pairs) stage([&] { refit_with(pair.causes, &pair); });
-  normalise(hypotheses_);
-  polish_leaders(leader_count, stage);
+  if (pairs_) {
+    const std::vector<PairGuess> pairs = [&] {
+      const auto part = context_.span(singles_end, search_end, fitting_stage);
+      return promising_pairs();
+    }();
+    const auto part = context_.span(search_end, pairs_end, fitting_stage);
+    refit_pairs(pairs);
+    normalise(hypotheses_);
+  }
+  {
+    const auto part = context_.span(pairs_end, 1, fitting_stage);
+    polish_leaders(leader_count);
+  }
   renew_noise();
   // The others stay as the linearised model has them, but no better than the worst that was tried in earnest.
   double worst = std::numeric_limits<double>::infinity();
@@ -272,21 +193,6 @@ void Explanations::refit() {
   normalise(hypotheses_);
 }
 
-void Explanations::polish_leaders(std::size_t count, const std::function<void(const std::function<void()>&)>& stage) {
-  std::set<std::vector<int>> leaders{{}};
-  const double highest = hypotheses_.front().log_evidence;
-  for (const Hypothesis& h : hypotheses_) {
-    if (leaders.size() > count || (leaders.size() > 2 && h.log_evidence < highest - out_of_reach)) break;
-    leaders.insert(h.causes);
-    if (h.causes.size() == 2)
-      for (const int cause : h.causes) leaders.insert({cause});
-  }
-  for (const std::size_t size : {2u, 1u, 0u})
-    for (Refit& r : refits_)
-      if (r.causes.size() == size && leaders.contains(r.causes)) stage([&] { polish(r); });
-  normalise(hypotheses_);
-}
-
 std::vector<PairGuess> Explanations::promising_pairs() {
   std::vector<FittedSingle> singles;
   for (const Hypothesis& h : hypotheses_) {
@@ -297,7 +203,8 @@ std::vector<PairGuess> Explanations::promising_pairs() {
     singles.push_back({h.causes[0], fit.u, fit.predictions});
   }
   const NuisanceParameters equal{discrepancies_, discrepancy_sensitivities_};
-  const StructuredObjective objective(model_, *misfit_, nearest_size(model_.known_misfit()), equal);
+  const auto objective =
+      std::make_shared<StructuredObjective>(model_, *misfit_, nearest_size(model_.known_misfit()), equal);
   PairSearch search =
       search_pairs(model_, *misfit_, objective, equal, singles, pair_anchors, context_, "Searching for two causes");
   cheap_simulations_ += search.simulations;

@@ -2,7 +2,6 @@
 #pragma once
 // The explanations a diagnosis compares: each fitted together with the base parameters, each with its marginal
 // likelihood. For diagnosis.cpp.
-#include <functional>
 #include <optional>
 
 #include "evidence/fit/hypotheses.h"
@@ -41,7 +40,7 @@ class Explanations {
   bool decided() const;
   /// Instead of the three: weighs what `coarse`, of a coarser simulation of the same data, has found likely or nearly
   /// so, beginning from its fits. Fills everything. Throws Error{could_not_solve, cancelled}.
-  void look_again(const Explanations& coarse);
+  void look_again(Explanations& coarse);
 
   const ParameterFit& base() const { return base_; }
   const std::vector<NoiseEstimate>& noise() const { return noise_; }
@@ -52,7 +51,8 @@ class Explanations {
   const std::vector<int>& columns() const { return columns_; }
   const std::vector<Sensitivities>& sensitivities() const { return sensitivities_; }
   /// The same about the set-up's own material, where a cause of one sign is taken at its usual strength:
-  /// what it does from there on to zero. Simulates these. Throws Error{cancelled}.
+  /// what it does from there on to zero. Simulates these, on the coarser sheet where there is one. Throws
+  /// Error{cancelled}.
   std::vector<Sensitivities> usual_sensitivities();
   /// What may differ where `causes` and nothing else is at work.
   NuisanceParameters nuisances(const std::vector<int>& causes) const;
@@ -88,10 +88,23 @@ class Explanations {
   /// Fits base parameters and those of `causes` together, from the best of `starts`. No more structure is allowed than
   /// the right causes would leave: with as much as there is, what the causes should explain would cost nothing
   /// unexplained.
-  ParameterFit fit_from(const std::vector<int>& causes, const std::vector<Eigen::VectorXd>& starts,
-                        std::vector<Sensitivities> known, const FitOptions& options);
+  FitProblem problem(const std::vector<int>& causes, std::vector<Eigen::VectorXd> starts,
+                     std::vector<Sensitivities> known, const FitOptions& options) const;
   /// From where the linearised model has them, with the sensitivities it was made of; or from `guess`.
-  void refit_with(const std::vector<int>& causes, const PairGuess* guess = nullptr);
+  FitProblem problem_from_base(const std::vector<int>& causes, const PairGuess* guess) const;
+  /// The same from the set-up's own material, for at most one cause: a fault that is not among the base parameters
+  /// drags them far off, and nothing near there points back. Nothing where it is out of reach.
+  std::optional<FitProblem> problem_from_nominal(const std::vector<int>& causes);
+  /// Once more from where its fit ended; sensitivities are taken afresh there. What was learnt with more causes counts
+  /// for fewer.
+  FitProblem polishing(const Refit& refit) const;
+  /// All together. Where pairs are not searched, those that cannot lead any more are stopped on their way.
+  std::vector<FitInProgress> fitted(std::vector<FitProblem> problems);
+  /// None or one cause each, from both materials. Each is weighed.
+  void refit_singles(const std::vector<std::vector<int>>& explanations);
+  void refit_pairs(const std::vector<PairGuess>& guesses);
+  /// The set-up's own parameters, with these causes as strong as they usually are.
+  Eigen::VectorXd at_usual_strength(const std::vector<int>& causes) const;
   /// One of their parameters is never negative.
   bool has_one_sign(const std::vector<int>& causes) const;
   /// Behind the linearised leader and the best fit so far by more than a linear model is wrong: not worth a fit, except
@@ -99,16 +112,10 @@ class Explanations {
   bool cannot_lead(const std::vector<int>& causes) const;
   /// Those with the most log evidence first.
   std::vector<const Refit*> likeliest_refits() const;
-  /// Once more where a coarser simulation has it, unless it is out of reach or does nothing there.
-  void refit_as(const Refit& coarse);
-  /// Polishes the likeliest `count` explanations, what they are parts of and have as parts, larger ones first; `stage`
-  /// counts the steps.
-  void polish_leaders(std::size_t count, const std::function<void(const std::function<void()>&)>& stage);
-  /// The same from the set-up's own material, for at most one cause: a fault that is not among the base parameters
-  /// drags them far off, and nothing near there points back.
-  std::optional<ParameterFit> fit_from_nominal(const std::vector<int>& causes);
-  /// Once more, with sensitivities taken where the fit stands; what was learnt with more causes counts for fewer.
-  void polish(Refit& refit);
+  /// Once more where a coarser simulation has them, unless they are out of reach or do nothing there.
+  void refit_as(const std::vector<const Refit*>& coarse);
+  /// Polishes the likeliest `count` explanations, what they are parts of and have as parts, larger ones first.
+  void polish_leaders(std::size_t count);
   /// The marginal likelihood of an explanation where its fit has it.
   void weigh_refit(const Refit& refit);
   /// What passed for outliers about the calibrated model may have been misfit that an explanation accounts for: once
@@ -137,6 +144,7 @@ class Explanations {
   std::vector<Hypothesis> screened_, hypotheses_;
   std::vector<Refit> refits_;
   int cheap_simulations_ = 0;
+  Explanations* coarser_ = nullptr;  // that were looked at before
 };
 
 }  // namespace formwright

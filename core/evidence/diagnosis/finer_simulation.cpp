@@ -45,32 +45,47 @@ std::vector<const Explanations::Refit*> Explanations::likeliest_refits() const {
   return list;
 }
 
-void Explanations::refit_as(const Refit& coarse) {
-  std::vector<const ParameterFit*> candidates{&coarse.fit};
-  if (coarse.alternative) candidates.push_back(&*coarse.alternative);
-  std::erase_if(candidates, [&](const ParameterFit* candidate) {
-    return std::any_of(coarse.causes.begin(), coarse.causes.end(), [&](int cause) {
-      return movement(cause, candidate->u) <= min_movement * model_.known_misfit();
-    });
-  });
+void Explanations::refit_as(const std::vector<const Refit*>& coarse) {
+  struct Candidate {
+    const Refit* refit;
+    const ParameterFit* fit;
+  };
+  std::vector<Candidate> candidates;
   std::vector<Eigen::VectorXd> starts;
-  for (const ParameterFit* candidate : candidates) starts.push_back(candidate->u);
+  for (const Refit* refit : coarse)
+    for (const ParameterFit* fit : {&refit->fit, refit->alternative ? &*refit->alternative : nullptr}) {
+      if (fit == nullptr || std::any_of(refit->causes.begin(), refit->causes.end(), [&](int cause) {
+            return movement(cause, fit->u) <= min_movement * model_.known_misfit();
+          }))
+        continue;
+      candidates.push_back({refit, fit});
+      starts.push_back(fit->u);
+    }
   if (starts.empty()) return;
-  const StructuredObjective objective(model_, *misfit_, nearest_size(model_.known_misfit()), nuisances(coarse.causes));
   const auto predictions = bag_.run(starts, context_, fitting_stage);
-  double best_value = refit_of({}).fit.value + out_of_reach;
-  const ParameterFit* best = nullptr;
-  for (std::size_t i = 0; i < starts.size(); ++i) {
-    if (!predictions[i]) continue;
-    const double value = objective.value(residuals(model_, *predictions[i]), starts[i]);
-    if (value < best_value) best_value = value, best = candidates[i];
+  std::vector<FitProblem> problems;
+  std::vector<const Refit*> again;
+  for (const Refit* refit : coarse) {
+    double best_value = refit_of({}).fit.value + out_of_reach;
+    std::optional<FitProblem> best;
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+      if (candidates[i].refit != refit || !predictions[i]) continue;
+      FitProblem candidate = problem(refit->causes, {starts[i]}, candidates[i].fit->sensitivities, quick_fit);
+      const double value = candidate.objective->value(residuals(model_, *predictions[i]), starts[i]);
+      if (value < best_value) best_value = value, best = std::move(candidate);
+    }
+    if (!best) continue;
+    problems.push_back(std::move(*best));
+    again.push_back(refit);
   }
-  if (best == nullptr) return;
-  refits_.push_back({fit_from(coarse.causes, {best->u}, best->sensitivities, quick_fit), coarse.causes, {}});
-  weigh_refit(refits_.back());
+  const std::vector<FitInProgress> fits = fitted(std::move(problems));
+  for (std::size_t i = 0; i < again.size(); ++i) {
+    refits_.push_back({fits[i].fit(), again[i]->causes, {}});
+    weigh_refit(refits_.back());
+  }
 }
 
-void Explanations::look_again(const Explanations& coarse) {
+void Explanations::look_again(Explanations& coarse) {
   const char* const looking = "Repeating on a finer sheet";
   const auto span = context_.span(0.75, 0.9, looking);
   auto at_nominal = [&] {
@@ -80,6 +95,7 @@ void Explanations::look_again(const Explanations& coarse) {
   if (!at_nominal)
     throw Error(ErrorCode::could_not_solve, "", "The finer simulation fails with the set-up's own parameters.");
   at_nominal_ = std::move(*at_nominal);
+  coarser_ = &coarse;
   columns_ = coarse.columns_;
   sensitivities_ = coarse.sensitivities_;
   nominal_sensitivities_ = coarse.nominal_sensitivities_;
@@ -87,8 +103,12 @@ void Explanations::look_again(const Explanations& coarse) {
   noise_ = coarse.noise_;
   {
     const auto begin = context_.span(0.05, 0.2, looking);
-    base_ = fit_parameters(bag_, *mean_distance_objective(model_, softness()), model_.base_parameters(), coarse.base_.u,
-                           sensitivities_of(model_.base_parameters(), sensitivities_, columns_), {}, context_, looking);
+    base_ = fit_parameters(bag_,
+                           {mean_distance_objective(model_, softness()),
+                            model_.base_parameters(),
+                            {coarse.base_.u},
+                            sensitivities_of(model_.base_parameters(), sensitivities_, columns_)},
+                           context_, looking);
   }
   // What equally good simulations would do is less on a finer sheet; where a coarse one leaps a fine one does, too.
   {
@@ -111,30 +131,28 @@ void Explanations::look_again(const Explanations& coarse) {
   weigh_screened();
 
   const Refit& plain = coarse.refit_of({});
-  refits_.push_back({fit_from({}, {base_.u, plain.fit.u}, plain.fit.sensitivities, quick_fit), {}, {}});
+  const auto refitting = context_.span(0.3, 0.8, looking);
+  refits_.push_back(
+      {fitted({problem({}, {base_.u, plain.fit.u}, plain.fit.sensitivities, quick_fit)}).front().fit(), {}, {}});
   weigh_refit(refits_.back());
   double best = plain_none(coarse.hypotheses_).log_evidence;
   for (const Hypothesis& h : coarse.hypotheses_) best = std::max(best, h.log_evidence);
-  double done = 0;
-  std::size_t again = 0;
-  for (const Refit* at : coarse.likeliest_refits()) {
-    const Refit& r = *at;
-    const auto fit = context_.span(0.3 + 0.4 * done / static_cast<double>(coarse.refits_.size()),
-                                   0.3 + 0.4 * (done + 1) / static_cast<double>(coarse.refits_.size()), looking);
-    ++done;
-    if (r.causes.empty()) continue;
-    const bool near = std::any_of(coarse.hypotheses_.begin(), coarse.hypotheses_.end(), [&](const Hypothesis& h) {
-      return h.causes == r.causes && h.log_evidence > best - out_of_reach;
+  std::vector<const Refit*> near;
+  for (const Refit* r : coarse.likeliest_refits()) {
+    const bool in_reach = std::any_of(coarse.hypotheses_.begin(), coarse.hypotheses_.end(), [&](const Hypothesis& h) {
+      return h.causes == r->causes && h.log_evidence > best - out_of_reach;
     });
-    if (near && again++ < max_again) refit_as(r);
+    if (!r->causes.empty() && in_reach && near.size() < max_again) near.push_back(r);
+  }
+  {
+    const auto part = context_.span(0.1, 0.6, looking);
+    refit_as(near);
   }
   normalise(hypotheses_);
-  double polished = 0;
-  polish_leaders(polished_again, [&](const std::function<void()>& work) {
-    const auto fit = context_.span(std::min(1.0, 0.7 + 0.1 * polished), std::min(1.0, 0.8 + 0.1 * polished), looking);
-    ++polished;
-    work();
-  });
+  {
+    const auto part = context_.span(0.6, 1, looking);
+    polish_leaders(polished_again);
+  }
   renew_noise();
   // The others stay as far from none as they were, and no better: they were out of reach, or did nothing.
   const double none = plain_none(hypotheses_).log_evidence, coarse_none = plain_none(coarse.hypotheses_).log_evidence;

@@ -21,12 +21,12 @@ bool one_sided(const ForwardModel& model, int cause) {
 class Neighbourhood {
  public:
   Neighbourhood(const ForwardModel& cheap, Predictions correction, const MisfitOfAll& misfit,
-                const FitObjective& objective, const NuisanceParameters& discrepancies,
+                std::shared_ptr<const FitObjective> objective, const NuisanceParameters& discrepancies,
                 const std::vector<FittedSingle>& singles, const FittedSingle& anchor)
       : model_(cheap, std::move(correction)),
         bag_(model_),
         misfit_(misfit),
-        objective_(objective),
+        objective_(std::move(objective)),
         discrepancies_(discrepancies),
         singles_(singles),
         anchor_(anchor) {}
@@ -51,11 +51,28 @@ class Neighbourhood {
     std::erase_if(linear_, [&](const Hypothesis& h) { return rank++ >= partners && !one_sided(model_, partner(h)); });
   }
 
-  std::size_t count() const { return linear_.size(); }
+  /// The pairs, fitted. The model has an answer at the anchor at least.
+  std::vector<PairGuess> fit(Context& context, const std::string& stage) {
+    std::vector<FitInProgress> fits;
+    for (const Hypothesis& linear : linear_) fits.emplace_back(model_, problem(linear));
+    run_fits({&bag_}, fits, context, stage);
+    std::vector<PairGuess> guesses;
+    for (std::size_t i = 0; i < linear_.size(); ++i) {
+      const ParameterFit& fit = fits[i].fit();
+      Hypothesis h = linear_[i];
+      weigh(model_,
+            misfit_.gram(residuals(model_, fit.predictions),
+                         side_by_side(fit.sensitivities, discrepancies_.sensitivities)),
+            joined(fit.free, discrepancies_.parameters), fit.u, h);
+      guesses.push_back({h.causes, h.log_evidence, fit.u, fit.sensitivities});
+    }
+    return guesses;
+  }
 
-  /// The i-th pair, fitted. The model has an answer at the anchor at least.
-  PairGuess fit(std::size_t i, Context& context, const std::string& stage) {
-    const Hypothesis& linear = linear_[i];
+  int simulations() const { return bag_.simulations(); }
+
+ private:
+  FitProblem problem(const Hypothesis& linear) const {
     const std::vector<int> free = model_.base_and(linear.causes);
     std::vector<Eigen::VectorXd> starts{anchor_.u, towards(model_, free, anchor_.u, linear.u)};
     if (one_sided(model_, partner(linear))) {
@@ -70,25 +87,14 @@ class Neighbourhood {
       for (const int p : model_.causes()[static_cast<std::size_t>(single.cause)].parameters)
         starts.back()[p] = single.u[p];
     }
-    for (Eigen::VectorXd& start : starts) start = within_ranges(model_, std::move(start));
-    ParameterFit fit = fit_from_best(bag_, objective_, free, starts, sensitivities_of(free, sensitivities_, columns_),
-                                     quick_fit, context, stage);
-    Hypothesis h = linear;
-    weigh(
-        model_,
-        misfit_.gram(residuals(model_, fit.predictions), side_by_side(fit.sensitivities, discrepancies_.sensitivities)),
-        joined(free, discrepancies_.parameters), fit.u, h);
-    return {linear.causes, h.log_evidence, std::move(fit.u), std::move(fit.sensitivities)};
+    return {objective_, free, std::move(starts), sensitivities_of(free, sensitivities_, columns_), quick_fit};
   }
 
-  int simulations() const { return bag_.simulations(); }
-
- private:
   int partner(const Hypothesis& h) const { return h.causes[0] == anchor_.cause ? h.causes[1] : h.causes[0]; }
   AnchoredModel model_;
   SimulationBag bag_;
   const MisfitOfAll& misfit_;
-  const FitObjective& objective_;
+  std::shared_ptr<const FitObjective> objective_;
   const NuisanceParameters& discrepancies_;
   const std::vector<FittedSingle>& singles_;
   const FittedSingle& anchor_;
@@ -99,9 +105,10 @@ class Neighbourhood {
 
 }  // namespace
 
-PairSearch search_pairs(const ForwardModel& model, const MisfitOfAll& misfit, const FitObjective& objective,
-                        const NuisanceParameters& discrepancies, const std::vector<FittedSingle>& singles,
-                        std::size_t anchors, Context& context, const std::string& stage) {
+PairSearch search_pairs(const ForwardModel& model, const MisfitOfAll& misfit,
+                        const std::shared_ptr<const FitObjective>& objective, const NuisanceParameters& discrepancies,
+                        const std::vector<FittedSingle>& singles, std::size_t anchors, Context& context,
+                        const std::string& stage) {
   const ForwardModel& cheap = model.cheaper() != nullptr ? *model.cheaper() : model;
   PairSearch found;
   SimulationBag cheap_bag(cheap);
@@ -121,11 +128,8 @@ PairSearch search_pairs(const ForwardModel& model, const MisfitOfAll& misfit, co
       if (error.code() != ErrorCode::could_not_solve) throw;
       continue;  // at the edge of what can be simulated: the other anchors go on
     }
-    for (std::size_t i = 0; i < near.count(); ++i) {
-      const double share = 0.7 / static_cast<double>(near.count());
-      const auto part =
-          context.span(0.3 + share * static_cast<double>(i), 0.3 + share * static_cast<double>(i + 1), stage);
-      PairGuess guess = near.fit(i, context, stage);
+    const auto part = context.span(0.3, 1, stage);
+    for (PairGuess& guess : near.fit(context, stage)) {
       const auto known = std::find_if(found.guesses.begin(), found.guesses.end(),
                                       [&](const PairGuess& g) { return g.causes == guess.causes; });
       if (known == found.guesses.end()) found.guesses.push_back(std::move(guess));

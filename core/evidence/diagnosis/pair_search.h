@@ -58,8 +58,9 @@ struct PairSearch {
 /// Fits each of the first `anchors` of `singles`, likeliest first, together with the others that have a chance beside
 /// it. `misfit` and `objective` are the diagnosis's own. Throws Error{cancelled}; where the model has no answer, pairs
 /// are left out.
-PairSearch search_pairs(const ForwardModel& model, const MisfitOfAll& misfit, const FitObjective& objective,
-                        const NuisanceParameters& discrepancies, const std::vector<FittedSingle>& singles,
-                        std::size_t anchors, Context& context, const std::string& stage);
+PairSearch search_pairs(const ForwardModel& model, const MisfitOfAll& misfit,
+                        const std::shared_ptr<const FitObjective>& objective, const NuisanceParameters& discrepancies,
+                        const std::vector<FittedSingle>& singles, std::size_t anchors, Context& context,
+                        const std::string& stage);
 
 }  // namespace formwright

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <memory>
 #include <optional>
 
 #include "base/error.h"
@@ -44,11 +45,13 @@ std::vector<Eigen::VectorXd> spread_starts(const ForwardModel& model, const Para
   return starts;
 }
 
-/// Calibrated. `before`: without what the extension brings; null for the usual simulation.
-ParameterFit calibrated(SimulationBag& bag, double softness, const ParameterFit* before, Context& context) {
-  const ForwardModel& model = bag.model();
-  return fit_from_best(bag, *mean_distance_objective(model, softness), model.base_parameters(),
-                       spread_starts(model, before), {}, choosing_fit, context, stage);
+/// To calibrate it. `before`: without what the extension brings; null for the usual simulation.
+FitProblem calibration(const ForwardModel& model, double softness, const ParameterFit* before) {
+  return {mean_distance_objective(model, softness),
+          model.base_parameters(),
+          spread_starts(model, before),
+          {},
+          choosing_fit};
 }
 
 /// What the causes of the usual simulation do about it. An extension changes that little.
@@ -58,11 +61,32 @@ struct FreeCauses {
 };
 
 /// From a calibrated simulation on, every cause fitted as well: what is left then no cause makes.
-ParameterFit with_causes(SimulationBag& bag, double softness, const ParameterFit& calibrated, const FreeCauses& causes,
-                         Context& context) {
-  return fit_parameters(bag, *mean_distance_objective(bag.model(), softness), joined(calibrated.free, causes.columns),
-                        calibrated.u, side_by_side(calibrated.sensitivities, causes.sensitivities), quick_fit, context,
-                        stage);
+FitProblem with_causes(const ForwardModel& model, double softness, const ParameterFit& calibrated,
+                       const FreeCauses& causes) {
+  return {mean_distance_objective(model, softness),
+          joined(calibrated.free, causes.columns),
+          {calibrated.u},
+          side_by_side(calibrated.sensitivities, causes.sensitivities),
+          quick_fit};
+}
+
+/// Fits in the models of `bags`, all together. Empty where there is no problem, or no answer.
+std::vector<std::optional<ParameterFit>> fitted(const std::vector<std::unique_ptr<SimulationBag>>& bags,
+                                                std::vector<std::optional<FitProblem>> problems, Context& context) {
+  std::vector<SimulationBag*> own;
+  std::vector<FitInProgress> fits;
+  std::vector<std::size_t> places;
+  for (std::size_t i = 0; i < bags.size(); ++i) {
+    own.push_back(bags[i].get());
+    if (!problems[i]) continue;
+    fits.emplace_back(bags[i]->model(), std::move(*problems[i]));
+    places.push_back(i);
+  }
+  run_fits(own, fits, context, stage);
+  std::vector<std::optional<ParameterFit>> result(bags.size());
+  for (std::size_t k = 0; k < fits.size(); ++k)
+    if (fits[k].has_answer()) result[places[k]] = fits[k].fit();
+  return result;
 }
 
 /// Marginal likelihood of the data, about a fit with every cause.
@@ -77,7 +101,7 @@ SimulationChoice chosen(const ForwardModel& model, Context& context) {
   SimulationChoice choice;
   const std::size_t rounds = model.extensions().size();
   if (rounds == 0) return choice;
-  const auto parts = static_cast<double>(3 + rounds * (rounds + 1) / 2);
+  const auto parts = static_cast<double>(3 + 2 * rounds);
   double done = 0;
   const auto part = [&](auto&& work) {
     const auto span = context.span(std::min(1.0, done / parts), std::min(1.0, (done + 1) / parts), stage);
@@ -91,13 +115,15 @@ SimulationChoice chosen(const ForwardModel& model, Context& context) {
   const Predictions left = residuals(model, *at_nominal);
   for (std::size_t m = 0; m < left.size(); ++m) noise.push_back(estimate_noise(model.measurements()[m], left[m]));
   const double softness = largest_noise(model, noise);
-  ParameterFit best = part([&] { return calibrated(usual_bag, softness, nullptr, context); });
+  ParameterFit best =
+      part([&] { return fit_parameters(usual_bag, calibration(model, softness, nullptr), context, stage); });
   FreeCauses causes;
   for (const Cause& cause : model.causes())
     for (const int p : cause.parameters) causes.columns.push_back(p);
   causes.sensitivities =
       part([&] { return sensitivities_at(usual_bag, best.u, best.predictions, causes.columns, context, stage); });
-  const ParameterFit best_with_causes = part([&] { return with_causes(usual_bag, softness, best, causes, context); });
+  const ParameterFit best_with_causes =
+      part([&] { return fit_parameters(usual_bag, with_causes(model, softness, best, causes), context, stage); });
   // The same weights for all, without what passed for outliers only because a cause was at work.
   const Predictions free = residuals(model, best_with_causes.predictions);
   std::vector<Precisions> precisions;
@@ -115,30 +141,30 @@ SimulationChoice chosen(const ForwardModel& model, Context& context) {
     const ForwardModel* leading_model = nullptr;
     std::size_t leading_place = 0;
     const double error_before = mean_distance(*best_model, residuals(*best_model, best.predictions));
-    for (const SimulationExtension& extension : best_model->extensions()) {
-      SimulationBag bag(*extension.model);
-      try {
-        ParameterFit fit;
-        const double evidence = part([&] {
-          {
-            const auto span = context.span(0, 0.7, stage);
-            fit = calibrated(bag, softness, &best, context);
-          }
-          const auto span = context.span(0.7, 1, stage);
-          return log_evidence(*extension.model, with_causes(bag, softness, fit, causes, context), misfit);
-        });
-        if (evidence > leading) {
-          leading = evidence;
-          leading_model = extension.model;
-          leading_place = choice.tried.size();
-          leader = fit;
-        }
-        choice.tried.push_back({extension, evidence - best_evidence, error_before,
-                                mean_distance(model, residuals(model, fit.predictions)), false});
-      } catch (const Error& error) {
-        if (error.code() != ErrorCode::could_not_solve) throw;
+    const std::vector<SimulationExtension> extensions = best_model->extensions();
+    std::vector<std::unique_ptr<SimulationBag>> bags;
+    std::vector<std::optional<FitProblem>> problems;
+    for (const SimulationExtension& extension : extensions) {
+      bags.push_back(std::make_unique<SimulationBag>(*extension.model));
+      problems.push_back(calibration(*extension.model, softness, &best));
+    }
+    const auto fits = part([&] { return fitted(bags, std::move(problems), context); });
+    problems.assign(extensions.size(), std::nullopt);
+    for (std::size_t i = 0; i < extensions.size(); ++i)
+      if (fits[i]) problems[i] = with_causes(*extensions[i].model, softness, *fits[i], causes);
+    const auto fits_with_causes = part([&] { return fitted(bags, std::move(problems), context); });
+    for (std::size_t i = 0; i < extensions.size(); ++i) {
+      choice.simulations += bags[i]->simulations();
+      if (!fits_with_causes[i]) continue;
+      const double evidence = log_evidence(*extensions[i].model, *fits_with_causes[i], misfit);
+      if (evidence > leading) {
+        leading = evidence;
+        leading_model = extensions[i].model;
+        leading_place = choice.tried.size();
+        leader = fits[i];
       }
-      choice.simulations += bag.simulations();
+      choice.tried.push_back({extensions[i], evidence - best_evidence, error_before,
+                              mean_distance(model, residuals(model, fits[i]->predictions)), false});
     }
     choice.u = best.u;
     if (!leader || leading < best_evidence + min_gain) return choice;

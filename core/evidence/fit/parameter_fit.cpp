@@ -11,56 +11,10 @@
 namespace formwright {
 namespace {
 
-class MeanDistance : public FitObjective {
- public:
-  MeanDistance(const ForwardModel& model, double soft) : model_(model), soft_(std::max(soft, 1e-9)) {
-    for (const Measurement& measurement : model.measurements())
-      count_ += static_cast<double>(measurement.measured.rows());
-  }
-
-  double value(const Predictions& residuals, const Eigen::VectorXd& u) const override {
-    double sum = 0;
-    for (const Eigen::MatrixXd& r : residuals)
-      sum += ((r.rowwise().squaredNorm().array() + soft_ * soft_).sqrt() - soft_).sum();
-    sum /= count_;
-    for (Eigen::Index p = 0; p < u.size(); ++p) sum += 0.5 * pull(p) * u[p] * u[p];
-    return sum;
-  }
-
-  void quadratic(const Predictions& residuals, const std::vector<Sensitivities>& sensitivities,
-                 const std::vector<int>& free, const Eigen::VectorXd& u, Eigen::VectorXd& g,
-                 Eigen::MatrixXd& H) const override {
-    const auto k = static_cast<Eigen::Index>(free.size());
-    g = Eigen::VectorXd::Zero(k);
-    H = Eigen::MatrixXd::Zero(k, k);
-    for (std::size_t object = 0; object < residuals.size(); ++object) {
-      const Eigen::VectorXd w =
-          (residuals[object].rowwise().squaredNorm().array() + soft_ * soft_).sqrt().inverse() / count_;
-      for (Eigen::Index a = 0; a < k; ++a) {
-        const Eigen::MatrixXd weighted = w.asDiagonal() * sensitivities[object][static_cast<std::size_t>(a)];
-        g[a] -= weighted.cwiseProduct(residuals[object]).sum();
-        for (Eigen::Index b = 0; b <= a; ++b)
-          H(a, b) += weighted.cwiseProduct(sensitivities[object][static_cast<std::size_t>(b)]).sum();
-      }
-    }
-    H.triangularView<Eigen::StrictlyUpper>() = H.transpose();
-    for (Eigen::Index a = 0; a < k; ++a) {
-      const double weight = pull(free[static_cast<std::size_t>(a)]);
-      g[a] += weight * u[free[static_cast<std::size_t>(a)]];
-      H(a, a) += weight;
-    }
-  }
-
- private:
-  /// As many points as neighbours that know nothing of each other, about a hundred, would weigh against the prior:
-  /// little against any data, yet enough to leave near its nominal value what they do not tell.
-  double pull(Eigen::Index p) const {
-    return 1e-2 * soft_ / std::pow(model_.parameters()[static_cast<std::size_t>(p)].prior_sd, 2);
-  }
-
-  const ForwardModel& model_;
-  double soft_, count_ = 0;
-};
+constexpr double short_damping = 30;  // times that of the full step
+constexpr double good_share = 0.25;   // of the promised gain: with less the shorter step is tried, too
+constexpr double max_damping = 10;
+constexpr double worth_a_step = 0.25;  // of the tolerance, that a step must promise
 
 /// J += (y - J s) s^T / (s^T D s) with D = diag(1 / probe^2): Broyden's good update in units of the probes.
 void broyden_update(std::vector<Sensitivities>& J, const Predictions& before, const Predictions& after,
@@ -76,17 +30,6 @@ void broyden_update(std::vector<Sensitivities>& J, const Predictions& before, co
 }
 
 }  // namespace
-
-std::unique_ptr<FitObjective> mean_distance_objective(const ForwardModel& model, double soft) {
-  return std::make_unique<MeanDistance>(model, soft);
-}
-
-Predictions residuals(const ForwardModel& model, const Predictions& predictions) {
-  Predictions result;
-  for (std::size_t object = 0; object < predictions.size(); ++object)
-    result.push_back(model.measurements()[object].measured - predictions[object]);
-  return result;
-}
 
 Eigen::VectorXd bounded_step(const Eigen::MatrixXd& H, const Eigen::VectorXd& g, const Eigen::VectorXd& low,
                              const Eigen::VectorXd& high) {
@@ -106,151 +49,206 @@ Eigen::VectorXd bounded_step(const Eigen::MatrixXd& H, const Eigen::VectorXd& g,
   return s;
 }
 
-Probing probe_around(SimulationBag& bag, const Eigen::VectorXd& u, const Predictions& at_u,
-                     const std::vector<int>& free, Context& context, const std::string& stage) {
-  const ForwardModel& model = bag.model();
-  std::vector<Eigen::VectorXd> points;
-  for (const int p : free)
-    for (const double sign : {1.0, -1.0}) {
-      Eigen::VectorXd moved = u;
-      moved[p] += sign * model.parameters()[static_cast<std::size_t>(p)].probe;
-      // Discrepancies are switches: there is no other side.
-      const bool switched =
-          model.parameters()[static_cast<std::size_t>(p)].role == ParameterRole::discrepancy && sign < 0;
-      points.push_back(switched ? u : within_ranges(model, moved));
-    }
-  auto predictions = bag.run(points, context, stage);
-  // Where there is no answer on either side a shorter step may have one.
-  constexpr double shorter = 0.25;
-  std::vector<std::size_t> again;
-  std::vector<Eigen::VectorXd> nearer;
-  for (std::size_t i = 0; i < points.size(); ++i)
-    if (!predictions[i] && (!predictions[i ^ 1] || points[i ^ 1] == u)) {
-      again.push_back(i);
-      points[i] = u + shorter * (points[i] - u);
-      nearer.push_back(points[i]);
-    }
-  if (!nearer.empty()) {
-    auto found = bag.run(nearer, context, stage);
-    for (std::size_t i = 0; i < again.size(); ++i) predictions[again[i]] = std::move(found[i]);
-  }
-  Probing result{std::vector<Sensitivities>(at_u.size()), std::vector<std::vector<Eigen::MatrixXd>>(at_u.size())};
-  for (std::size_t i = 0; i < free.size(); ++i) {
-    const Eigen::Index p = free[i];
-    const bool plus = predictions[2 * i] && points[2 * i][p] != u[p],
-               minus = predictions[2 * i + 1] && points[2 * i + 1][p] != u[p];
-    if (!plus && !minus)
-      throw Error(
-          ErrorCode::could_not_solve, "",
-          "The simulation fails on both sides of " + model.parameters()[static_cast<std::size_t>(p)].label + ".");
-    const double upper = plus ? points[2 * i][p] : u[p], lower = minus ? points[2 * i + 1][p] : u[p];
-    for (std::size_t object = 0; object < at_u.size(); ++object) {
-      const Eigen::MatrixXd& above = plus ? (*predictions[2 * i])[object] : at_u[object];
-      const Eigen::MatrixXd& below = minus ? (*predictions[2 * i + 1])[object] : at_u[object];
-      result.sensitivities[object].push_back((above - below) / (upper - lower));
-      if (plus && minus) result.bends[object].push_back(0.5 * (above + below) - at_u[object]);
-    }
-  }
-  return result;
+FitInProgress::FitInProgress(const ForwardModel& model, FitProblem problem)
+    : model_(model), problem_(std::move(problem)), probe_(static_cast<Eigen::Index>(problem_.free.size())) {
+  for (Eigen::Index a = 0; a < probe_.size(); ++a)
+    probe_[a] = model.parameters()[static_cast<std::size_t>(problem_.free[static_cast<std::size_t>(a)])].probe;
+  for (const Eigen::VectorXd& start : problem_.starts) wanted_.push_back(within_ranges(model, start));
 }
 
-std::vector<Sensitivities> sensitivities_at(SimulationBag& bag, const Eigen::VectorXd& u, const Predictions& at_u,
-                                            const std::vector<int>& free, Context& context, const std::string& stage) {
-  return probe_around(bag, u, at_u, free, context, stage).sensitivities;
+double FitInProgress::share_done() const {
+  if (wanted_.empty()) return 1;
+  constexpr double begun = 0.05, prepared = 0.3;
+  if (asked_ == Asked::starts) return 0;
+  if (iteration_ == 0) return asked_ == Asked::sensitivities ? begun : prepared;
+  return prepared + (1 - prepared) * iteration_ / (problem_.options.max_iterations + 1.0);
 }
 
-ParameterFit fit_parameters(SimulationBag& bag, const FitObjective& objective, const std::vector<int>& free,
-                            const Eigen::VectorXd& start, std::vector<Sensitivities> known, const FitOptions& options,
-                            Context& context, const std::string& stage) {
-  const ForwardModel& model = bag.model();
-  ParameterFit fit;
-  fit.free = free;
-  fit.u = within_ranges(model, start);
-  constexpr double prepared = 0.3;  // of the work: simulations about the start
-  const auto first = [&] {
-    const auto span = context.span(0, 0.05, stage);
-    return bag.run(fit.u, context, stage);
-  }();
-  if (!first)
-    throw Error(ErrorCode::could_not_solve, "",
-                "The simulation fails at the parameters to start from: check the set-up.");
-  fit.predictions = *first;
-  fit.value = objective.value(residuals(model, fit.predictions), fit.u);
-  bool fresh = known.empty();
-  {
-    const auto span = context.span(0.05, prepared, stage);
-    fit.sensitivities = fresh ? sensitivities_at(bag, fit.u, fit.predictions, free, context, stage) : std::move(known);
+void FitInProgress::take(std::vector<std::optional<Predictions>> made) {
+  switch (asked_) {
+    case Asked::starts: begin(made); return;
+    case Asked::sensitivities:
+      probing_->take(std::move(made));
+      wanted_ = probing_->wanted();
+      if (!wanted_.empty()) return;
+      try {
+        fit_.sensitivities = probing_->result(fit_.predictions).sensitivities;
+      } catch (const Error& error) {
+        // At the edge of what can be simulated: with those of before it stays where it is.
+        if (fit_.sensitivities.empty()) why_not_ = error;
+        if (fit_.sensitivities.empty()) fit_.free.clear();
+        return;
+      }
+      probing_.reset();
+      next_step();
+      return;
+    case Asked::full_step:
+    case Asked::short_step:
+      tried_.push_back(std::move(made.front()));
+      decide();
+      return;
   }
+}
 
-  const auto k = static_cast<Eigen::Index>(free.size());
-  Eigen::VectorXd probe(k);
-  for (Eigen::Index a = 0; a < k; ++a)
-    probe[a] = model.parameters()[static_cast<std::size_t>(free[static_cast<std::size_t>(a)])].probe;
-  double damping = 0.03;
-  int small_gains = 0;
-  for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
-    const auto until = [&](int done) { return prepared + (1 - prepared) * done / options.max_iterations; };
-    const auto span = context.span(until(iteration), until(iteration + 1), stage);
-    Eigen::VectorXd g, low(k), high(k);
-    Eigen::MatrixXd H;
-    objective.quadratic(residuals(model, fit.predictions), fit.sensitivities, free, fit.u, g, H);
-    for (Eigen::Index a = 0; a < k; ++a) {
-      const Eigen::Index p = free[static_cast<std::size_t>(a)];
-      const ModelParameter& parameter = model.parameters()[static_cast<std::size_t>(p)];
-      // Secants hold within a few probes.
-      low[a] = std::max(parameter.low_u() - fit.u[p], -4 * probe[a]);
-      high[a] = std::min(parameter.high_u() - fit.u[p], 4 * probe[a]);
+void FitInProgress::begin(const std::vector<std::optional<Predictions>>& made) {
+  double best = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < made.size(); ++i) {
+    if (!made[i]) continue;
+    const double value = problem_.objective->value(residuals(model_, *made[i]), wanted_[i]);
+    if (!(value < best)) continue;
+    best = fit_.value = value;
+    fit_.u = wanted_[i];
+    fit_.predictions = *made[i];
+  }
+  wanted_.clear();
+  if (fit_.u.size() == 0) {
+    why_not_ = Error(ErrorCode::could_not_solve, "",
+                     "The simulation fails at the parameters to start from: check the set-up.");
+    return;
+  }
+  fit_.free = problem_.free;
+  if (problem_.known.empty()) {
+    renew();
+    probings_ = 0;
+    began_fresh_ = true;
+  } else {
+    fit_.sensitivities = std::move(problem_.known);
+    next_step();
+  }
+}
+
+void FitInProgress::renew() {
+  ++probings_;
+  probing_.emplace(model_, fit_.u, problem_.free);
+  wanted_ = probing_->wanted();
+  asked_ = Asked::sensitivities;
+}
+
+Eigen::VectorXd FitInProgress::place_after(const Eigen::VectorXd& step) const {
+  Eigen::VectorXd u = fit_.u;
+  for (Eigen::Index a = 0; a < step.size(); ++a) u[problem_.free[static_cast<std::size_t>(a)]] += step[a];
+  return u;
+}
+
+void FitInProgress::next_step() {
+  wanted_.clear();
+  promised_gain_ = 0;
+  if (iteration_++ >= problem_.options.max_iterations) return;
+  const Eigen::Index k = probe_.size();
+  Eigen::VectorXd g, low(k), high(k);
+  Eigen::MatrixXd H;
+  problem_.objective->quadratic(residuals(model_, fit_.predictions), fit_.sensitivities, problem_.free, fit_.u, g, H);
+  for (Eigen::Index a = 0; a < k; ++a) {
+    const Eigen::Index p = problem_.free[static_cast<std::size_t>(a)];
+    const ModelParameter& parameter = model_.parameters()[static_cast<std::size_t>(p)];
+    // Secants hold within a few probes.
+    low[a] = std::max(parameter.low_u() - fit_.u[p], -4 * probe_[a]);
+    high[a] = std::min(parameter.high_u() - fit_.u[p], 4 * probe_[a]);
+  }
+  const double scale = (probe_.asDiagonal() * H * probe_.asDiagonal()).diagonal().maxCoeff();
+  steps_.clear();
+  tried_.clear();
+  for (const double factor : {1.0, short_damping}) {
+    Eigen::MatrixXd damped = H;
+    for (Eigen::Index a = 0; a < k; ++a)
+      damped(a, a) += damping_ * factor * std::max(H(a, a), 1e-3 * scale / (probe_[a] * probe_[a])) + 1e-12;
+    steps_.push_back(bounded_step(damped, g, low, high));
+  }
+  const Eigen::VectorXd& full = steps_.front();
+  promised_gain_ = std::max(0.0, -(g.dot(full) + 0.5 * full.dot(H * full)));
+  if (promised_gain_ < worth_a_step * problem_.options.tolerance * std::abs(fit_.value)) {
+    converged();
+    return;
+  }
+  asked_ = Asked::full_step;
+  wanted_ = {place_after(full)};
+}
+
+void FitInProgress::converged() {
+  wanted_.clear();
+  if (may_renew() && !began_fresh_) renew();
+}
+
+void FitInProgress::decide() {
+  std::optional<std::size_t> best;
+  double best_value = fit_.value;
+  for (std::size_t c = 0; c < tried_.size(); ++c) {
+    if (!tried_[c]) continue;
+    const double value = problem_.objective->value(residuals(model_, *tried_[c]), place_after(steps_[c]));
+    if (value < best_value) best = c, best_value = value;
+  }
+  if (tried_.size() < steps_.size() && fit_.value - best_value < good_share * promised_gain_) {
+    asked_ = Asked::short_step;
+    wanted_ = {place_after(steps_[tried_.size()])};
+    return;
+  }
+  // The step that is taken last: what it teaches is then the last word.
+  for (std::size_t c = tried_.size(); c-- > 0;)
+    if (tried_[c] && c != best) broyden_update(fit_.sensitivities, fit_.predictions, *tried_[c], steps_[c], probe_);
+  if (best) {
+    broyden_update(fit_.sensitivities, fit_.predictions, *tried_[*best], steps_[*best], probe_);
+    const double gain = (fit_.value - best_value) / std::max(std::abs(fit_.value), 1e-12);
+    fit_.u = place_after(steps_[*best]);
+    fit_.predictions = std::move(*tried_[*best]);
+    fit_.value = best_value;
+    damping_ = *best == 0 ? damping_ * 0.3 : damping_ * 10;
+    small_gains_ = gain < problem_.options.tolerance ? small_gains_ + 1 : 0;
+    if (small_gains_ >= 2) converged();
+    else next_step();
+    return;
+  }
+  if (may_renew()) {
+    renew();
+    return;
+  }
+  damping_ *= 100;
+  if (damping_ > max_damping) wanted_.clear();
+  else next_step();
+}
+
+void run_fits(const std::vector<SimulationBag*>& bags, std::vector<FitInProgress>& fits, Context& context,
+              const std::string& stage, const std::function<bool(const FitInProgress&)>& hopeless) {
+  const auto bag_of = [&](const FitInProgress& fit) {
+    return static_cast<std::size_t>(
+        std::find_if(bags.begin(), bags.end(), [&](const SimulationBag* b) { return &b->model() == &fit.model(); }) -
+        bags.begin());
+  };
+  const auto share = [&] {
+    double sum = 0;
+    for (const FitInProgress& fit : fits) sum += fit.share_done();
+    return sum / static_cast<double>(fits.size());
+  };
+  for (;;) {
+    std::vector<std::vector<Eigen::VectorXd>> points(bags.size());
+    std::size_t waiting = 0;
+    for (FitInProgress& fit : fits) {
+      if (fit.iterations() > 0 && hopeless && hopeless(fit)) fit.stop();
+      if (fit.wanted().empty()) continue;
+      std::vector<Eigen::VectorXd>& own = points[bag_of(fit)];
+      own.insert(own.end(), fit.wanted().begin(), fit.wanted().end());
+      ++waiting;
     }
-    // Two lengths of step at a time, one for each of two cores.
-    std::vector<Eigen::VectorXd> points;
-    std::vector<Eigen::VectorXd> steps;
-    for (const double factor : {1.0, 30.0}) {
-      Eigen::MatrixXd damped = H;
-      const double scale = (probe.asDiagonal() * H * probe.asDiagonal()).diagonal().maxCoeff();
-      for (Eigen::Index a = 0; a < k; ++a)
-        damped(a, a) += damping * factor * std::max(H(a, a), 1e-3 * scale / (probe[a] * probe[a])) + 1e-12;
-      steps.push_back(bounded_step(damped, g, low, high));
-      points.push_back(fit.u);
-      for (Eigen::Index a = 0; a < k; ++a) points.back()[free[static_cast<std::size_t>(a)]] += steps.back()[a];
-    }
-    const auto tried = [&] {
-      const auto half = context.span(0, 0.5, stage);
-      return bag.run(points, context, stage);
-    }();
-    int best = -1;
-    double best_value = fit.value;
-    for (int c = 0; c < 2; ++c) {
-      if (!tried[static_cast<std::size_t>(c)]) continue;
-      const double value =
-          objective.value(residuals(model, *tried[static_cast<std::size_t>(c)]), points[static_cast<std::size_t>(c)]);
-      if (value < best_value) best = c, best_value = value;
-    }
-    // The shorter step first: what the longer one teaches is then the last word where both were seen.
-    for (const int c : {1, 0})
-      if (tried[static_cast<std::size_t>(c)] && c != best)
-        broyden_update(fit.sensitivities, fit.predictions, *tried[static_cast<std::size_t>(c)],
-                       steps[static_cast<std::size_t>(c)], probe);
-    if (best >= 0) {
-      const auto b = static_cast<std::size_t>(best);
-      broyden_update(fit.sensitivities, fit.predictions, *tried[b], steps[b], probe);
-      const double gain = (fit.value - best_value) / std::max(std::abs(fit.value), 1e-12);
-      fit.u = points[b];
-      fit.predictions = *tried[b];
-      fit.value = best_value;
-      damping = best == 0 ? damping * 0.3 : damping * 10;
-      fresh = false;
-      small_gains = gain < options.tolerance ? small_gains + 1 : 0;
-      if (small_gains >= 2) break;
-    } else if (!fresh && options.renew_sensitivities) {
-      const auto half = context.span(0.5, 1, stage);
-      fit.sensitivities = sensitivities_at(bag, fit.u, fit.predictions, free, context, stage);
-      fresh = true;
-    } else {
-      damping *= 100;
-      if (damping > 1e4 || (!fresh && damping > 10)) break;
+    if (waiting == 0) return;
+    const double done = share(), step = 0.1 * static_cast<double>(waiting) / static_cast<double>(fits.size());
+    const auto span = context.span(done, std::min(1.0, done + step), stage);
+    const auto made = SimulationBag::run_together(bags, points, context, stage);
+    std::vector<std::size_t> taken(bags.size(), 0);
+    for (FitInProgress& fit : fits) {
+      if (fit.wanted().empty()) continue;
+      const std::size_t bag = bag_of(fit);
+      const auto begin = made[bag].begin() + static_cast<std::ptrdiff_t>(taken[bag]);
+      taken[bag] += fit.wanted().size();
+      fit.take({begin, begin + static_cast<std::ptrdiff_t>(fit.wanted().size())});
     }
   }
-  return fit;
+}
+
+ParameterFit fit_parameters(SimulationBag& bag, FitProblem problem, Context& context, const std::string& stage) {
+  std::vector<FitInProgress> fits;
+  fits.emplace_back(bag.model(), std::move(problem));
+  run_fits({&bag}, fits, context, stage);
+  if (!fits.front().has_answer()) throw *fits.front().why_not();
+  return fits.front().fit();
 }
 
 Eigen::VectorXd towards(const ForwardModel& model, const std::vector<int>& free, const Eigen::VectorXd& from,
@@ -261,42 +259,6 @@ Eigen::VectorXd towards(const ForwardModel& model, const std::vector<int>& free,
     u[p] += std::clamp(to[p] - from[p], -reach, reach);
   }
   return u;
-}
-
-ParameterFit fit_from_best(SimulationBag& bag, const FitObjective& objective, const std::vector<int>& free,
-                           const std::vector<Eigen::VectorXd>& starts, std::vector<Sensitivities> known,
-                           const FitOptions& options, Context& context, const std::string& stage) {
-  const auto predictions = bag.run(starts, context, stage);
-  std::size_t best = 0;
-  double best_value = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < starts.size(); ++i) {
-    const std::optional<Predictions>& there = predictions[i];
-    if (!there) continue;
-    const double value = objective.value(residuals(bag.model(), *there), starts[i]);
-    if (value < best_value) best = i, best_value = value;
-  }
-  return fit_parameters(bag, objective, free, starts[best], std::move(known), options, context, stage);
-}
-
-std::vector<Sensitivities> sensitivities_of(const std::vector<int>& wanted, const std::vector<Sensitivities>& all,
-                                            const std::vector<int>& columns) {
-  std::vector<Sensitivities> result(all.size());
-  for (const int p : wanted) {
-    const auto at = static_cast<std::size_t>(std::find(columns.begin(), columns.end(), p) - columns.begin());
-    for (std::size_t object = 0; object < all.size(); ++object) result[object].push_back(all[object][at]);
-  }
-  return result;
-}
-
-std::vector<Sensitivities> side_by_side(std::vector<Sensitivities> a, const std::vector<Sensitivities>& b) {
-  for (std::size_t object = 0; object < a.size(); ++object)
-    a[object].insert(a[object].end(), b[object].begin(), b[object].end());
-  return a;
-}
-
-std::vector<int> joined(std::vector<int> a, const std::vector<int>& b) {
-  a.insert(a.end(), b.begin(), b.end());
-  return a;
 }
 
 }  // namespace formwright

@@ -1,34 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Fits some of a forward model's parameters to its data: Levenberg and Marquardt with secant sensitivities, since a
-// simulation with contact has no derivative worth the name at the scale of round-off.
-#include <memory>
-#include <vector>
+// Fits some of a forward model's parameters to its data: Levenberg and Marquardt with secant sensitivities [Bro65].
+// Several fits go on together: each says what it wants simulated next, and all of that is one batch for all cores.
+#include <functional>
 
-#include "evidence/fit/simulation_bag.h"
+#include "base/error.h"
+#include "evidence/fit/fit_objective.h"
 
 namespace formwright {
-
-/// Sensitivities of one object: for each free parameter, n x d, per unit of u.
-using Sensitivities = std::vector<Eigen::MatrixXd>;
-
-/// measured - predicted, each object.
-Predictions residuals(const ForwardModel& model, const Predictions& predictions);
-
-/// What a fit makes small.
-class FitObjective {
- public:
-  virtual ~FitObjective() = default;
-  virtual double value(const Predictions& residuals, const Eigen::VectorXd& u) const = 0;
-  /// Quadratic model about u for steps of the `free` parameters: value + g^T s + s^T H s / 2, H positive semi-definite.
-  virtual void quadratic(const Predictions& residuals, const std::vector<Sensitivities>& sensitivities,
-                         const std::vector<int>& free, const Eigen::VectorXd& u, Eigen::VectorXd& g,
-                         Eigen::MatrixXd& H) const = 0;
-};
-
-/// The thesis's error, the mean Euclidean distance of all points, rounded off below `soft` (the noise): mean sqrt(|r|^2
-/// + soft^2) - soft. A weak pull of the priors decides where the data say nothing.
-std::unique_ptr<FitObjective> mean_distance_objective(const ForwardModel& model, double soft);
 
 /// s that minimises g^T s + s^T H s / 2 with low <= s <= high; H positive definite, small. By active sets.
 Eigen::VectorXd bounded_step(const Eigen::MatrixXd& H, const Eigen::VectorXd& g, const Eigen::VectorXd& low,
@@ -37,7 +16,7 @@ Eigen::VectorXd bounded_step(const Eigen::MatrixXd& H, const Eigen::VectorXd& g,
 struct FitOptions {
   int max_iterations = 12;
   double tolerance = 2e-3;          // relative gain below which the fit has converged
-  bool renew_sensitivities = true;  // take them afresh where secants lead nowhere; otherwise stop there
+  bool renew_sensitivities = true;  // take them afresh, once, where the known ones lead no farther
 };
 
 /// For searching: a handful of steps on the sensitivities that are known.
@@ -51,43 +30,77 @@ struct ParameterFit {
   double value = 0;
 };
 
-/// What the model does around a place: slopes, and for each parameter that was stepped to both sides half the second
-/// difference, n x d: by how much a prediction misses the secant. It is small for what is smooth, and large where a
-/// simulation jumps, as a sheet that snaps into a corner.
-struct Probing {
-  std::vector<Sensitivities> sensitivities;         // each object, of the probed parameters
-  std::vector<std::vector<Eigen::MatrixXd>> bends;  // each object
+struct FitProblem {
+  std::shared_ptr<const FitObjective> objective;
+  std::vector<int> free;                  // parameters
+  std::vector<Eigen::VectorXd> starts;    // at least one: begins at the best of them that the model has an answer for
+  std::vector<Sensitivities> known = {};  // to begin with; empty: taken at the start
+  FitOptions options = {};
 };
 
-/// Steps of the parameters' probes from `u`, to both sides where the range allows it.
-/// Throws Error{could_not_solve} where the model has no answer on either side.
-Probing probe_around(SimulationBag& bag, const Eigen::VectorXd& u, const Predictions& at_u,
-                     const std::vector<int>& free, Context& context, const std::string& stage);
+/// One fit that says what it wants simulated next.
+class FitInProgress {
+ public:
+  FitInProgress(const ForwardModel& model, FitProblem problem);
+  /// Empty: finished.
+  const std::vector<Eigen::VectorXd>& wanted() const { return wanted_; }
+  /// What the model predicts at wanted(), empty where it has no answer.
+  void take(std::vector<std::optional<Predictions>> made);
+  /// Where it stands is its result.
+  void stop() { wanted_.clear(); }
 
-/// The slopes alone.
-std::vector<Sensitivities> sensitivities_at(SimulationBag& bag, const Eigen::VectorXd& u, const Predictions& at_u,
-                                            const std::vector<int>& free, Context& context, const std::string& stage);
+  /// False where the model has no answer at any start, or on either side of a parameter there: see why_not().
+  bool has_answer() const { return fit_.free.size() > 0; }
+  const std::optional<Error>& why_not() const { return why_not_; }
+  /// Steps that were tried.
+  int iterations() const { return iteration_; }
+  /// What the quadratic model promises at the next step; the value where none was modelled.
+  double promised() const { return fit_.value - promised_gain_; }
+  /// Of its work, at most 1.
+  double share_done() const;
+  const ParameterFit& fit() const { return fit_; }
+  const ForwardModel& model() const { return model_; }
 
-/// Starts from `start`, whose predictions must exist (else Error{could_not_solve}). `known`: sensitivities to begin
-/// with, may be empty.
-ParameterFit fit_parameters(SimulationBag& bag, const FitObjective& objective, const std::vector<int>& free,
-                            const Eigen::VectorXd& start, std::vector<Sensitivities> known, const FitOptions& options,
-                            Context& context, const std::string& stage);
+ private:
+  enum class Asked { starts, sensitivities, full_step, short_step };
+
+  void begin(const std::vector<std::optional<Predictions>>& made);
+  void renew();
+  bool may_renew() const { return problem_.options.renew_sensitivities && probings_ == 0; }
+  void next_step();
+  void converged();
+  /// The better of those steps that improve on where it stands.
+  void decide();
+  Eigen::VectorXd place_after(const Eigen::VectorXd& step) const;
+
+  const ForwardModel& model_;
+  FitProblem problem_;
+  ParameterFit fit_;
+  Asked asked_ = Asked::starts;
+  std::vector<Eigen::VectorXd> wanted_;
+  std::optional<ProbingInProgress> probing_;
+  std::optional<Error> why_not_;
+  bool began_fresh_ = false;
+  int probings_ = 0;  // after the start
+  Eigen::VectorXd probe_;
+  double damping_ = 0.03, promised_gain_ = 0;
+  int iteration_ = 0, small_gains_ = 0;
+  // Of the current iteration, the full step first.
+  std::vector<Eigen::VectorXd> steps_;
+  std::vector<std::optional<Predictions>> tried_;
+};
+
+/// Runs all to their ends, each with the bag of its model. A fit that `hopeless` holds for after a step is stopped
+/// where it stands.
+void run_fits(const std::vector<SimulationBag*>& bags, std::vector<FitInProgress>& fits, Context& context,
+              const std::string& stage, const std::function<bool(const FitInProgress&)>& hopeless = {});
+
+/// One alone. Throws Error{could_not_solve} where it has no answer.
+ParameterFit fit_parameters(SimulationBag& bag, FitProblem problem, Context& context, const std::string& stage);
 
 /// `from`, moved to `to` in the parameters `free`, but by three probes each at most: secants hold no farther, and a
 /// longer distance is covered in steps.
 Eigen::VectorXd towards(const ForwardModel& model, const std::vector<int>& free, const Eigen::VectorXd& from,
                         const Eigen::VectorXd& to);
-
-/// The same from the best of `starts`, none where the model has no answer.
-ParameterFit fit_from_best(SimulationBag& bag, const FitObjective& objective, const std::vector<int>& free,
-                           const std::vector<Eigen::VectorXd>& starts, std::vector<Sensitivities> known,
-                           const FitOptions& options, Context& context, const std::string& stage);
-
-/// Of `all`, in the order of `columns`, those of `wanted`.
-std::vector<Sensitivities> sensitivities_of(const std::vector<int>& wanted, const std::vector<Sensitivities>& all,
-                                            const std::vector<int>& columns);
-std::vector<Sensitivities> side_by_side(std::vector<Sensitivities> a, const std::vector<Sensitivities>& b);
-std::vector<int> joined(std::vector<int> a, const std::vector<int>& b);
 
 }  // namespace formwright

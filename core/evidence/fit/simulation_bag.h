@@ -24,6 +24,11 @@ class SimulationBag {
                                               const std::string& stage);
   std::optional<Predictions> run(const Eigen::VectorXd& point, Context& context, const std::string& stage);
 
+  /// The same for several models at a time, each with points of its own, as one batch. The bags are different ones.
+  static std::vector<std::vector<std::optional<Predictions>>> run_together(
+      const std::vector<SimulationBag*>& bags, const std::vector<std::vector<Eigen::VectorXd>>& points,
+      Context& context, const std::string& stage);
+
   /// Drops what is kept: a long search asks for nothing twice.
   void forget() { known_.clear(); }
 
@@ -31,6 +36,8 @@ class SimulationBag {
   int simulations() const { return simulations_; }
 
  private:
+  struct Missing;
+
   const ForwardModel& model_;
   std::map<std::vector<double>, std::optional<Predictions>> known_;
   std::atomic<int> simulations_{0};

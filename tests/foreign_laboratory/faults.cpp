@@ -28,8 +28,10 @@ constexpr Named named[] = {{"colder_right_k", &Faults::colder_right_k},
                            {"mould_rotation_deg", &Faults::mould_rotation_deg},
                            {"mould_scale", &Faults::mould_scale},
                            {"print_scale", &Faults::print_scale},
-                           {"print_stretch", &Faults::print_stretch},
+                           {"print_stretch_x", &Faults::print_stretch_x},
+                           {"print_stretch_y", &Faults::print_stretch_y},
                            {"scan_scale", &Faults::scan_scale},
+                           {"scan_stretch", &Faults::scan_stretch},
                            {"scan_shift_x_mm", &Faults::scan_shift_x_mm},
                            {"scan_shift_y_mm", &Faults::scan_shift_y_mm},
                            {"scan_shift_z_mm", &Faults::scan_shift_z_mm}};
@@ -41,9 +43,7 @@ double uniform(std::mt19937_64& random, double low, double high) {
   return low + (high - low) * (static_cast<double>(random() >> 11) * per_integer);
 }
 
-bool acts_on_measurement(std::string_view cause) {
-  return cause == "print_scale" || cause == "print_stretch" || cause == "scan_scale" || cause == "scan_shift";
-}
+bool acts_on_measurement(std::string_view cause) { return cause.starts_with("print_") || cause.starts_with("scan_"); }
 
 Faults draw_faults(std::string_view cause, double level, std::mt19937_64& random) {
   if (!(level > 0) || !(level <= 2)) throw std::invalid_argument("level: give a number above 0 and at most 2");
@@ -67,7 +67,9 @@ Faults draw_faults(std::string_view cause, double level, std::mt19937_64& random
   else if (cause == "mould_rotation") f.mould_rotation_deg = 7 * sign * size;
   else if (cause == "mould_scale") f.mould_scale = 0.03 * sign * size;
   else if (cause == "print_scale") f.print_scale = 0.009 * sign * size;
-  else if (cause == "print_stretch") f.print_stretch = 0.013 * sign * size;
+  else if (cause == "print_stretch_x") f.print_stretch_x = 0.013 * sign * size;
+  else if (cause == "print_stretch_y") f.print_stretch_y = 0.013 * sign * size;
+  else if (cause == "scan_stretch") f.scan_stretch = 0.015 * sign * size;
   else if (cause == "scan_scale") f.scan_scale = 0.01 * sign * size;
   else if (cause == "scan_shift")
     f.scan_shift_x_mm = 0.8 * along_x, f.scan_shift_y_mm = 0.8 * along_y, f.scan_shift_z_mm = 0.4 * sign * size;

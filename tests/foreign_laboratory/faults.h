@@ -5,7 +5,7 @@
 //
 // The same number with the same meaning: slip (1 / Coulomb's coefficient, by other rules of sticking), thicker_right
 // and thicker_back (thickness_wedge), vacuum_lost (weak_vacuum; here of the pump's final vacuum), mould_shift,
-// mould_rotation, mould_scale, print_scale, scan_scale, scan_shift.
+// mould_rotation, mould_scale, print_scale, print_stretch_x, print_stretch_y, scan_scale, scan_shift.
 // Nearly: anisotropy. Young's modulus along x is 1 + a times the even sheet's, along y a little more than 1 - a.
 // The direction alone:
 // - heating_gradient, heating_centre: here in kelvin. stiffness_ratio() gives the factor on stiffness after one second.
@@ -13,7 +13,7 @@
 //   the project has a reach of 10 mm, so that even water-cooled metal moves little.
 // - clamp_slip: here a speed for each N/mm of pull. `clamp_feed_mm` of the result is the mean movement of the rim,
 //   which is uneven along the sides.
-// None: print_stretch, a cause of no list.
+// None: scan_stretch, a cause of no list.
 #include <array>
 #include <random>
 #include <string>
@@ -36,18 +36,20 @@ struct Faults {
   double mould_rotation_deg = 0;
   double mould_scale = 0;
   double print_scale = 0;
-  double print_stretch = 0;  // the print is too long along y alone
+  double print_stretch_x = 0, print_stretch_y = 0;
   double scan_scale = 0;
+  double scan_stretch = 0;  // the scan is too long along x alone
   double scan_shift_x_mm = 0, scan_shift_y_mm = 0, scan_shift_z_mm = 0;
 };
 
-inline constexpr std::array<std::string_view, 15> cause_names = {
+inline constexpr std::array<std::string_view, 17> cause_names = {
     "heating_gradient", "heating_centre", "slip",       "anisotropy",  "thickness_wedge",
     "cooling",          "weak_vacuum",    "clamp_slip", "mould_shift", "mould_rotation",
-    "mould_scale",      "print_scale",    "scan_scale", "scan_shift",  "print_stretch"};
+    "mould_scale",      "print_scale",    "scan_scale", "scan_shift",  "print_stretch_y",
+    "print_stretch_x",  "scan_stretch"};
 
 /// Whether the diagnosis has the cause in its list.
-inline bool is_in_the_list(std::string_view cause) { return cause != "print_stretch"; }
+inline bool is_in_the_list(std::string_view cause) { return cause != "scan_stretch"; }
 
 /// Whether the cause changes the measurement alone, and not the formed sheet.
 bool acts_on_measurement(std::string_view cause);

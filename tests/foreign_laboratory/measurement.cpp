@@ -49,11 +49,13 @@ SurfacePoint point_of(const FormedSheet& sheet, const Vector2d& flat_mm) {
 
 SurfacePoint marked_point(const FormedSheet& sheet, const Vector2d& mark, const Faults& faults) {
   const double scale = 1 + faults.print_scale;
-  return point_of(sheet, {scale * mark.x(), scale * (1 + faults.print_stretch) * mark.y()});
+  return point_of(sheet,
+                  {scale * (1 + faults.print_stretch_x) * mark.x(), scale * (1 + faults.print_stretch_y) * mark.y()});
 }
 
 Vector3d scanned(const SurfacePoint& point, const Faults& faults) {
-  return (1 + faults.scan_scale) * (point.place + 0.5 * point.thickness_mm * point.outward) +
+  const Vector3d scale = (1 + faults.scan_scale) * Vector3d(1 + faults.scan_stretch, 1, 1);
+  return scale.cwiseProduct(point.place + 0.5 * point.thickness_mm * point.outward) +
          Vector3d(faults.scan_shift_x_mm, faults.scan_shift_y_mm, faults.scan_shift_z_mm);
 }
 

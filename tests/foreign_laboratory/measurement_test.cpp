@@ -33,13 +33,14 @@ FormedSheet plane() {
 TEST_CASE("Measurement.MarksAreOnTheOuterFaceWherePrintAndScanHaveThem") {
   const std::vector<Vector2d> marks = {{0, 0}, {50, -70}, {-101.5, 33}};
   Faults faults;
-  faults.print_scale = 0.01, faults.print_stretch = 0.02, faults.scan_scale = -0.03;
+  faults.print_scale = 0.01, faults.print_stretch_x = -0.04, faults.print_stretch_y = 0.02;
+  faults.scan_scale = -0.03, faults.scan_stretch = 0.05;
   faults.scan_shift_x_mm = 1, faults.scan_shift_y_mm = -2, faults.scan_shift_z_mm = 0.5;
   const Points exact = marked_places(plane(), marks, Faults{}), faulty = marked_places(plane(), marks, faults);
   for (std::size_t k = 0; k < marks.size(); ++k) {
     const auto column = static_cast<Eigen::Index>(k);
     CHECK((exact.col(column) - Vector3d(1.1 * marks[k].x(), marks[k].y(), 7.4)).norm() < 1e-12);
-    const Vector3d printed(1.1 * 1.01 * marks[k].x(), 1.01 * 1.02 * marks[k].y(), 7.4);
+    const Vector3d printed(1.05 * 1.1 * 1.01 * 0.96 * marks[k].x(), 1.01 * 1.02 * marks[k].y(), 7.4);
     CHECK((faulty.col(column) - (0.97 * printed + Vector3d(1, -2, 0.5))).norm() < 1e-12);
   }
 }
@@ -79,7 +80,7 @@ TEST_CASE("Measurement.NoiseHasTheStatedSizeAndOutliersTheStatedShare") {
 TEST_CASE("Measurement.TheSameRequestGivesTheSameBytesAndSaysWhatIsHidden") {
   Request request;
   request.mould = Mould::cone;
-  request.cause = "print_stretch";
+  request.cause = "scan_stretch";
   request.seed = 5;
   request.forming = {.cells = 8, .mass_scale = 30};
   request.scan.points = 100;
@@ -87,9 +88,9 @@ TEST_CASE("Measurement.TheSameRequestGivesTheSameBytesAndSaysWhatIsHidden") {
   CHECK(files == make_object(request));
   REQUIRE(files.size() == 4);
   const auto truth = nlohmann::json::parse(files.at("truth.json"));
-  CHECK(truth.at("cause") == "print_stretch");
+  CHECK(truth.at("cause") == "scan_stretch");
   CHECK(truth.at("in_the_list") == false);
-  CHECK(std::abs(truth.at("values").at("print_stretch").get<double>()) > 0.005);
+  CHECK(std::abs(truth.at("values").at("scan_stretch").get<double>()) > 0.005);
   CHECK(truth.at("movement_mean_mm").get<double>() > 0.2);
   const auto setup = nlohmann::json::parse(files.at("setup.json"));
   CHECK(setup.at("vacuum_kpa") == 80);

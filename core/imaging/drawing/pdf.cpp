@@ -75,10 +75,10 @@ void PdfDocument::add_page(double width_mm, double height_mm) {
   HPDF_Page_SetHeight(implementation_->page, points(height_mm));
 }
 
-void PdfDocument::add_page(const Vec2& size_mm, double scale, const Vec2& middle_mm) {
+void PdfDocument::add_page(const Vec2& size_mm, const Vec2& scale, const Vec2& middle_mm) {
   add_page(size_mm.x(), size_mm.y());
-  const Vec2 shift = size_mm / 2 - scale * middle_mm;
-  HPDF_Page_Concat(implementation_->page, static_cast<HPDF_REAL>(scale), 0, 0, static_cast<HPDF_REAL>(scale),
+  const Vec2 shift = size_mm / 2 - scale.cwiseProduct(middle_mm);
+  HPDF_Page_Concat(implementation_->page, static_cast<HPDF_REAL>(scale.x()), 0, 0, static_cast<HPDF_REAL>(scale.y()),
                    points(shift.x()), points(shift.y()));
 }
 

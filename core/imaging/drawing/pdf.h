@@ -33,8 +33,8 @@ class PdfDocument {
 
   /// Everything that follows goes onto this page.
   void add_page(double width_mm, double height_mm);
-  /// The same, drawn `scale` times as large: what is drawn at `middle_mm` lies in the middle of the page.
-  void add_page(const Vec2& size_mm, double scale, const Vec2& middle_mm);
+  /// The same, drawn `scale` times as large along x and y: what is drawn at `middle_mm` lies in the middle of the page.
+  void add_page(const Vec2& size_mm, const Vec2& scale, const Vec2& middle_mm);
 
   /// The whole picture with its middle at the placement's origin and pixels of `pixel_mm`, cut to the page's rectangle
   /// from `clip_lower_mm` to `clip_upper_mm`.

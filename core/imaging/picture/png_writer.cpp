@@ -13,6 +13,10 @@ namespace formwright {
 int pixels_per_metre(double dots_per_inch) { return static_cast<int>(std::lround(dots_per_inch / 0.0254)); }
 
 Bytes write_png(const Image& image, int per_metre, const Context& context) {
+  return write_png(image, Eigen::Vector2i(per_metre, per_metre), context);
+}
+
+Bytes write_png(const Image& image, const Eigen::Vector2i& per_metre, const Context& context) {
   if (image.width < 1 || image.height < 1 ||
       image.pixels.size() != static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height))
     throw Error(ErrorCode::internal, "", "The number of pixels of a picture must be its width times its height.");
@@ -28,8 +32,8 @@ Bytes write_png(const Image& image, int per_metre, const Context& context) {
     png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_FILTER_UP);
     png_set_compression_level(png, 3);
     png_set_sRGB(png, writer.info(), PNG_sRGB_INTENT_PERCEPTUAL);
-    if (per_metre > 0)
-      png_set_pHYs(png, writer.info(), static_cast<png_uint_32>(per_metre), static_cast<png_uint_32>(per_metre),
+    if (per_metre.minCoeff() > 0)
+      png_set_pHYs(png, writer.info(), static_cast<png_uint_32>(per_metre.x()), static_cast<png_uint_32>(per_metre.y()),
                    PNG_RESOLUTION_METER);
     png_write_info(png, writer.info());
     if (opaque) png_set_filler(png, 0, PNG_FILLER_AFTER);

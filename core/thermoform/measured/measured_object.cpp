@@ -138,7 +138,7 @@ class Prediction {
         clamped_z_mm_(clamp_z_mm + (outer_ ? 0.5 * sheet_thickness_mm : 0)) {}
 
   Predicted operator()(const Vec2& printed_mm) const {
-    const Vec2 sheet_mm = (1 + effects_.print_scale) * printed_mm;
+    const Vec2 sheet_mm = effects_.on_sheet(printed_mm);
     Predicted predicted{Vec3(sheet_mm.x(), sheet_mm.y(), clamped_z_mm_), Vec3::UnitZ(), false};
     if (const auto at = lookup_.find(sheet_mm)) {
       const Vec3 middle = lookup_.middle(*at), outer = lookup_.outer(*at);

@@ -49,7 +49,7 @@ Eigen::VectorXd predict_thickness(const FormedSheet& sheet, const TextureCoordin
   const SheetLookup lookup(sheet);
   Eigen::VectorXd thickness(sheet_mm.rows());
   for (Eigen::Index i = 0; i < thickness.size(); ++i) {
-    const Vec2 place = (1 + effects.print_scale) * sheet_mm.row(i).transpose();
+    const Vec2 place = effects.on_sheet(sheet_mm.row(i).transpose());
     if (const auto at = lookup.find(place)) thickness[i] = lookup.thickness_mm(*at);
     else
       thickness[i] = o.sheet_thickness_mm *

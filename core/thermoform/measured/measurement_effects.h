@@ -4,6 +4,7 @@
 #include <tuple>
 
 #include "base/data/parameters.h"
+#include "geometry/mesh/triangle_mesh.h"
 
 namespace formwright {
 
@@ -18,38 +19,70 @@ constexpr auto print_scale_parameter(double Options::*member, std::string_view g
       .advanced();
 }
 
+/// How much longer along one side alone, on top of print_scale.
+template <class Options>
+constexpr auto print_stretch_parameters(double Options::*x, double Options::*y, std::string_view group) {
+  return std::tuple{
+      parameter(
+          "print_stretch_x", x, "Print stretched from side to side by", unit::none, -0.2, 0.2,
+          "How much too long the printer prints from side to side alone, as a fraction: 0.01 is 1 %, negative is too short. Rollers that push the paper on a little too far do that.")
+          .group(group)
+          .slider(-0.05, 0.05)
+          .advanced(),
+      parameter(
+          "print_stretch_y", y, "Print stretched from front to back by", unit::none, -0.2, 0.2,
+          "How much too long the printer prints from front to back alone, as a fraction: 0.01 is 1 %, negative is too short.")
+          .group(group)
+          .slider(-0.05, 0.05)
+          .advanced()};
+}
+
+/// How many times as long as intended the printer prints along x and y.
+inline Vec2 print_factors(double scale, double stretch_x, double stretch_y) {
+  return (1 + scale) * Vec2(1 + stretch_x, 1 + stretch_y);
+}
+
 struct MeasurementEffects {
   static constexpr std::string_view group_title = "Measurement faults";
 
-  double print_scale = 0;  // the sheet's true coordinates are (1 + print_scale) times those in measured.csv
-  double scan_scale = 0;   // measured = (1 + scan_scale) true + shift, about the origin on the raised base plate
+  double print_scale = 0;
+  double print_stretch_x = 0;
+  double print_stretch_y = 0;
+  double scan_scale = 0;  // measured = (1 + scan_scale) true + shift, about the origin on the raised base plate
   double scan_shift_x_mm = 0;
   double scan_shift_y_mm = 0;
   double scan_shift_z_mm = 0;
 
-  static constexpr auto parameters = std::tuple{
-      print_scale_parameter(&MeasurementEffects::print_scale, group_title),
-      parameter(
-          "scan_scale", &MeasurementEffects::scan_scale, "Scan too large by", unit::none, -0.2, 0.2,
-          "How much larger than the object the scan is, as a fraction: 0.01 is 1 %, negative is too small. It grows from the centre of the opening on the plate.")
-          .group(group_title)
-          .slider(-0.05, 0.05)
-          .advanced(),
-      parameter("scan_shift_x_mm", &MeasurementEffects::scan_shift_x_mm, "Scan misplaced in x", unit::mm, -100, 100,
-                "How far the scan lies to the right of the true position; negative is to the left.")
-          .group(group_title)
-          .slider(-5, 5)
-          .advanced(),
-      parameter("scan_shift_y_mm", &MeasurementEffects::scan_shift_y_mm, "Scan misplaced in y", unit::mm, -100, 100,
-                "How far the scan lies behind the true position; negative is in front of it.")
-          .group(group_title)
-          .slider(-5, 5)
-          .advanced(),
-      parameter("scan_shift_z_mm", &MeasurementEffects::scan_shift_z_mm, "Scan misplaced in z", unit::mm, -100, 100,
-                "How far the scan lies above the true position; negative is below it.")
-          .group(group_title)
-          .slider(-5, 5)
-          .advanced()};
+  /// The true place on the sheet of what measured.csv has at `printed_mm`.
+  Vec2 on_sheet(const Vec2& printed_mm) const {
+    return print_factors(print_scale, print_stretch_x, print_stretch_y).cwiseProduct(printed_mm);
+  }
+
+  static constexpr auto parameters = std::tuple_cat(
+      std::tuple{print_scale_parameter(&MeasurementEffects::print_scale, group_title)},
+      print_stretch_parameters(&MeasurementEffects::print_stretch_x, &MeasurementEffects::print_stretch_y, group_title),
+      std::tuple{
+          parameter(
+              "scan_scale", &MeasurementEffects::scan_scale, "Scan too large by", unit::none, -0.2, 0.2,
+              "How much larger than the object the scan is, as a fraction: 0.01 is 1 %, negative is too small. It grows from the centre of the opening on the plate.")
+              .group(group_title)
+              .slider(-0.05, 0.05)
+              .advanced(),
+          parameter("scan_shift_x_mm", &MeasurementEffects::scan_shift_x_mm, "Scan misplaced in x", unit::mm, -100, 100,
+                    "How far the scan lies to the right of the true position; negative is to the left.")
+              .group(group_title)
+              .slider(-5, 5)
+              .advanced(),
+          parameter("scan_shift_y_mm", &MeasurementEffects::scan_shift_y_mm, "Scan misplaced in y", unit::mm, -100, 100,
+                    "How far the scan lies behind the true position; negative is in front of it.")
+              .group(group_title)
+              .slider(-5, 5)
+              .advanced(),
+          parameter("scan_shift_z_mm", &MeasurementEffects::scan_shift_z_mm, "Scan misplaced in z", unit::mm, -100, 100,
+                    "How far the scan lies above the true position; negative is below it.")
+              .group(group_title)
+              .slider(-5, 5)
+              .advanced()});
 };
 
 }  // namespace formwright

@@ -41,6 +41,8 @@ struct ThermoformPrintOptions : ThermoformOptions {
   double paper_margin_mm = 5;
   double overlap_mm = 10;
   double print_scale = 0;
+  double print_stretch_x = 0;
+  double print_stretch_y = 0;
   double gap_mm = 1.5;
   SheetProjectionMethod projection = SheetProjectionMethod::nearest;
   double map_edge_mm = 0.7;
@@ -90,7 +92,10 @@ struct ThermoformPrintOptions : ThermoformOptions {
               "Width of the strip that neighbouring pages share, so that they can be glued together. 10 mm is usual.")
               .group("Paper")
               .slider(0, 30),
-          print_scale_parameter(&ThermoformPrintOptions::print_scale, "Paper"),
+          print_scale_parameter(&ThermoformPrintOptions::print_scale, "Paper")},
+      print_stretch_parameters(&ThermoformPrintOptions::print_stretch_x, &ThermoformPrintOptions::print_stretch_y,
+                               "Paper"),
+      std::tuple{
           parameter(
               "gap_mm", &ThermoformPrintOptions::gap_mm, "Largest gap to colour", unit::mm, 0, 20,
               "Widest gap between model and formed sheet across which colours are still transferred, as in corners that the sheet spans. Larger leaves fewer white places and is less exact.")
@@ -108,8 +113,8 @@ struct ThermoformPrintOptions : ThermoformOptions {
               .slider(0.3, 3)
               .advanced()});
 
-  /// What is sent to the printer, as a multiple of what is to lie on the sheet.
-  double sent_scale() const { return 1 / (1 + print_scale); }
+  /// What is sent to the printer along x and y, as a multiple of what is to lie on the sheet.
+  Vec2 sent_scale() const { return print_factors(print_scale, print_stretch_x, print_stretch_y).cwiseInverse(); }
 };
 
 }  // namespace formwright

@@ -95,7 +95,7 @@ PageLayout page_layout(const ThermoformPrintOptions& options) {
     for (const bool landscape : {false, true}) {
       const Vec2 turned = landscape ? Vec2(paper.y(), paper.x()) : paper;
       // A printer that prints too small does not reach the paper's edge.
-      const Vec2 reached = std::min(1.0, 1 + options.print_scale) * turned;
+      const Vec2 reached = options.sent_scale().cwiseInverse().cwiseMin(1).cwiseProduct(turned);
       const Vec2 usable = reached.array() - 2 * (options.paper_margin_mm + frame_mm);
       // The widest margins leave 100 mm of the smallest paper, and overlaps end at 50 mm.
       const Division x = divide(sheet.x(), usable.x(), options.overlap_mm),
@@ -125,13 +125,13 @@ Bytes write_print_pdf(const Image& picture, const PrintGrid& grid, const PageLay
   context.check_cancelled();
   const Vec2 half(options.sheet_x_mm / 2, options.sheet_y_mm / 2), page(layout.width_mm, layout.height_mm);
   const bool framed = options.paper != Paper::sheet;
-  const double scale = options.sent_scale();
+  const Vec2 scale = options.sent_scale();
   const auto add_pages = [&](const Drawing& content, bool is_print) {
     for (const Tile& tile : layout.tiles) {
       const bool mirrored = is_print && options.mirror;
       const Vec2 origin = layout.origin_mm(tile), lower = origin + tile.lower_mm, upper = origin + tile.upper_mm;
-      if (scale == 1) pdf.add_page(page.x(), page.y());
-      else pdf.add_page(framed ? page : scale * page, scale, page / 2);
+      if (scale == Vec2(1, 1)) pdf.add_page(page.x(), page.y());
+      else pdf.add_page(framed ? page : Vec2(scale.cwiseProduct(page)), scale, page / 2);
       if (is_print) pdf.show_picture(stored, grid.pixel_mm(), {origin, mirrored}, lower, upper);
       pdf.draw(content, {origin, mirrored}, lower, upper);
       Drawing plain;
@@ -152,8 +152,8 @@ Bytes write_print_pdf(const Image& picture, const PrintGrid& grid, const PageLay
   return pdf.finish();
 }
 
-int sent_per_metre(const PrintGrid& grid, const ThermoformPrintOptions& options) {
-  return static_cast<int>(std::lround(grid.per_metre / options.sent_scale()));
+Eigen::Vector2i sent_per_metre(const PrintGrid& grid, const ThermoformPrintOptions& options) {
+  return (grid.per_metre * options.sent_scale().cwiseInverse()).array().round().matrix().cast<int>();
 }
 
 Image with_marks(const Image& picture, const PrintGrid& grid, const ThermoformPrintOptions& options) {

@@ -36,9 +36,9 @@ PageLayout page_layout(const ThermoformPrintOptions& options);
 Bytes write_print_pdf(const Image& picture, const PrintGrid& grid, const PageLayout& layout,
                       const ThermoformPrintOptions& options, std::string_view title, Context& context);
 
-/// Pixels per metre for the picture's file, rounded: the printer makes each (1 + print_scale) times as large as the
-/// file says.
-int sent_per_metre(const PrintGrid& grid, const ThermoformPrintOptions& options);
+/// Pixels per metre along x and y for the picture's file, rounded: the printer makes each print_factors() times as
+/// large as the file says.
+Eigen::Vector2i sent_per_metre(const PrintGrid& grid, const ThermoformPrintOptions& options);
 
 /// The picture as one file would show it: with marks, and mirrored where asked for.
 Image with_marks(const Image& picture, const PrintGrid& grid, const ThermoformPrintOptions& options);

@@ -16,7 +16,7 @@ import subprocess
 import threading
 
 CAUSES = ("heating_gradient heating_centre slip anisotropy thickness_wedge cooling weak_vacuum clamp_slip mould_shift mould_rotation mould_scale "
-          "print_scale scan_scale scan_shift").split()
+          "print_scale print_stretch_x print_stretch_y scan_scale scan_shift").split()
 
 
 def cases(repeat, pairs, clean):

@@ -96,7 +96,7 @@ Sheets that `tests/foreign_laboratory` formed, with a simulation of another kind
     foreign = [c for c in strong if not c.get("in_the_list", True)]
     if foreign:
         careful = sum(1 for c in foreign if "error" not in c and (not named(c) or c["doubtful"]))
-        print(f"\nA cause that is in no list (`print_stretch`): unknown, none or in doubt in {share_of(careful, len(foreign))}.")
+        print(f"\nA cause that is in no list (`scan_stretch`): unknown, none or in doubt in {share_of(careful, len(foreign))}.")
     good = [c for c in cases if "error" not in c]
     if good:
         clean = [c["error_before_mm"] for c in good if c["cause"] == "none"]

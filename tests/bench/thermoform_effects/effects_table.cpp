@@ -36,6 +36,8 @@ std::vector<Effect> effects() {
           {"mould_rotation_deg", 5, [](O& o, M&, double s) { o.mould_rotation_deg = s; }},
           {"mould_scale", 0.03, [](O& o, M&, double s) { o.mould_scale = s; }},
           {"print_scale", 0.015, [](O&, M& m, double s) { m.print_scale = s; }},
+          {"print_stretch_x", 0.02, [](O&, M& m, double s) { m.print_stretch_x = s; }},
+          {"print_stretch_y", 0.02, [](O&, M& m, double s) { m.print_stretch_y = s; }},
           {"scan_scale", 0.01, [](O&, M& m, double s) { m.scan_scale = s; }},
           {"scan_shift_x_mm", 1, [](O&, M& m, double s) { m.scan_shift_x_mm = s; }}};
 }

@@ -2,10 +2,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Our prints in other programs: Pillow for pictures, poppler for pages.
 
-other_readers.py PRINT_TOOL PAPER MIRROR PRINT_SCALE. Exits with 77 (skipped, for CTest) and a reason where a program is not
+other_readers.py PRINT_TOOL PAPER MIRROR PRINT_SCALE PRINT_STRETCH_X PRINT_STRETCH_Y. Exits with 77 (skipped, for CTest) and a reason where a program is not
 installed. Checks sizes in pixels and mm, where the picture lies on every page, that the pages put together are the
-picture again, that marks lie where they are said to, and what is written on the pages. PRINT_SCALE is how much too large the printer prints:
-what it makes of the files has to be of the sheet's size again.
+picture again, that marks lie where they are said to, and what is written on the pages. The last three are how much too large the printer prints,
+and how much too long along one side alone: what it makes of the files has to be of the sheet's size again.
 """
 import json
 import pathlib
@@ -51,12 +51,12 @@ def matrices(pdf):
 def check_png(folder, expected, image_module):
     for name in ("print.png", "picture.png"):
         image = image_module.open(folder / name)
-        printed = 1 + expected["print_scale"] if name == "print.png" else 1
-        # A file states whole pixels per metre: where a scale is made up for, half of one is lost.
-        lost = 0.5 if printed != 1 else 0
         if list(image.size) != expected["pixels"] or image.mode != "RGB":
             sys.exit(f"{name} is {image.size} {image.mode}")
         for k in range(2):
+            printed = expected["print_factors"][k] if name == "print.png" else 1
+            # A file states whole pixels per metre: where a scale is made up for, half of one is lost.
+            lost = 0.5 if printed != 1 else 0
             near(f"resolution of {name}", image.info["dpi"][k], expected["per_metre"] * 0.0254 * printed, 0.01 + lost * 0.0254)
             near(f"size of {name} in mm", image.size[k] / image.info["dpi"][k] * 25.4 * printed, expected["sheet_mm"][k], (510 + lost * expected["sheet_mm"][k]) / expected["per_metre"])
     image = image_module.open(folder / "print.png")
@@ -78,7 +78,7 @@ def check_pages(folder, expected, image_module):
         sys.exit(f"{len(sizes)} pages, should be {2 * len(tiles)}")
     for size in sizes:
         for k in range(2):
-            near("page size in mm", float(size[k]) / POINTS_PER_MM, expected["page_mm"][k] * page_scale(expected), 0.01)
+            near("page size in mm", float(size[k]) / POINTS_PER_MM, expected["page_mm"][k] * page_scale(expected)[k], 0.01)
     placed = matrices(pdf)
     if len(placed) != len(tiles):
         sys.exit(f"{len(placed)} pictures are placed, should be {len(tiles)}")
@@ -96,7 +96,8 @@ def check_pages(folder, expected, image_module):
         words = line.split()
         if [int(words[3]), int(words[4])] != expected["pixels"] or words[5] != "rgb":
             sys.exit(f"pdfimages finds {line}")
-        near("dots per inch", float(words[12]), expected["per_metre"] * 0.0254 * (1 + expected["print_scale"]), 1)
+        for k in range(2):
+            near("dots per inch", float(words[12 + k]), expected["per_metre"] * 0.0254 * expected["print_factors"][k], 1)
     text = run("pdftotext", "-raw", pdf, "-")
     words = ["FRONT"] + (["MIRRORED"] if expected["mirrored"] else [])
     # Words that lie across two pages are cut.
@@ -112,24 +113,25 @@ def check_pages(folder, expected, image_module):
 def page_scale(expected):
     """Paper of the sheet's size is as much smaller as what is drawn on it; other paper is not."""
     of_the_sheet = expected["page_mm"] == expected["sheet_mm"]
-    return 1 / (1 + expected["print_scale"]) if of_the_sheet else 1
+    return [1 / factor if of_the_sheet else 1 for factor in expected["print_factors"]]
 
 
 def reassemble(folder, expected, image_module):
     """Draws every page and puts the tiles side by side: inside the opening, where there are no marks, it is the picture."""
-    run("pdftoppm", "-r", DOTS_PER_INCH * (1 + expected["print_scale"]), "-png", "-l", len(expected["tiles"]), folder / "print.pdf", folder / "page")
+    along_x, along_y = (DOTS_PER_INCH * factor for factor in expected["print_factors"])
+    run("pdftoppm", "-rx", along_x, "-ry", along_y, "-png", "-l", len(expected["tiles"]), folder / "print.pdf", folder / "page")
     picture = image_module.open(folder / "picture.png").convert("RGB")
     pages = sorted(folder.glob("page-*.png"))
     scale = DOTS_PER_INCH / 25.4
     # Scaled, a tile's edge cuts through dots; these are on the neighbouring tile, too.
-    dot_mm = 1 / scale if expected["print_scale"] else 0
+    dot_mm = 1 / scale if expected["print_factors"] != [1, 1] else 0
     seen = bytearray(picture.width * picture.height)
     wrong = compared = 0
     for tile, path in zip(expected["tiles"], pages):
         page = image_module.open(path).convert("RGB")
         page_pixels, picture_pixels = page.load(), picture.load()
         # The page's middle, which no scale of the printer moves, on the paper that comes out of it and in what was drawn.
-        printed_mm = [side * page_scale(expected) * (1 + expected["print_scale"]) / 2 for side in expected["page_mm"]]
+        printed_mm = [side * own * factor / 2 for side, own, factor in zip(expected["page_mm"], page_scale(expected), expected["print_factors"])]
         drawn_mm = [side / 2 for side in expected["page_mm"]]
         for y in range(0, picture.height, 2):
             y_mm = (picture.height / 2 - y - 0.5) * 1000 / expected["per_metre"]
@@ -163,7 +165,7 @@ def reassemble(folder, expected, image_module):
 
 
 def main():
-    if len(sys.argv) != 5:
+    if len(sys.argv) != 7:
         sys.exit(__doc__)
     try:
         from PIL import Image  # pylint: disable=import-outside-toplevel

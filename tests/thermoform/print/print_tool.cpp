@@ -22,11 +22,13 @@ void save(const std::string& path, const formwright::Bytes& bytes) {
 
 int main(int argc, char** argv) {
   using namespace formwright;
-  if (argc != 5) return 2;
+  if (argc != 7) return 2;
   const std::string folder = argv[1], paper = argv[2];
   ThermoformPrintOptions options;
   options.mirror = std::atoi(argv[3]) != 0;
   options.print_scale = std::atof(argv[4]);
+  options.print_stretch_x = std::atof(argv[5]);
+  options.print_stretch_y = std::atof(argv[6]);
   for (std::size_t i = 0; i < EnumNames<Paper>::names.size(); ++i)
     if (EnumNames<Paper>::names[i] == paper) options.paper = static_cast<Paper>(i);
   options.dots_per_inch = 150;
@@ -61,7 +63,9 @@ int main(int argc, char** argv) {
                      {"page_mm", {layout.width_mm, layout.height_mm}},
                      {"tiles", tiles},
                      {"marks", marks},
-                     {"print_scale", options.print_scale},
+                     {"print_factors",
+                      {(1 + options.print_scale) * (1 + options.print_stretch_x),
+                       (1 + options.print_scale) * (1 + options.print_stretch_y)}},
                      {"mirrored", options.mirror}})
             << "\n";
   return 0;

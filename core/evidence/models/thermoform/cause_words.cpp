@@ -85,6 +85,9 @@ std::string thermoform_cause_in_words(std::string_view cause, std::span<const do
     return "The mould was about " + percent(v) + (v > 0 ? " larger" : " smaller") + " than its model.";
   if (cause == "print_scale")
     return "The pattern was printed about " + percent(v) + (v > 0 ? " too large." : " too small.");
+  if (cause == "print_stretch_x" || cause == "print_stretch_y")
+    return "The pattern was printed about " + percent(v) + (v > 0 ? " too long" : " too short") +
+           (cause == "print_stretch_x" ? " from side to side." : " from front to back.");
   if (cause == "scan_scale")
     return "The scan is about " + percent(v) + (v > 0 ? " larger" : " smaller") + " than the object.";
   if (cause == "scan_shift") return "The scan lies about " + way(values) + " from where the object was.";

@@ -60,12 +60,12 @@ InputInfo measured_input_info() {
 
 /// The mean error of the points that fall on the faces around each vertex, weighted by nearness.
 Bytes error_map(const FormedSheet& sheet, const std::vector<MeasuredPoint>& points, const Comparison& comparison,
-                double print_scale, Context& context) {
+                const MeasurementEffects& effects, Context& context) {
   const SheetLookup lookup(sheet);
   const Eigen::Index n = sheet.mesh.V.rows();
   Eigen::VectorXd error = Eigen::VectorXd::Zero(n), weight = Eigen::VectorXd::Zero(n);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const auto at = lookup.find((1 + print_scale) * points[i].sheet_mm);
+    const auto at = lookup.find(effects.on_sheet(points[i].sheet_mm));
     if (!at) continue;
     for (int k = 0; k < 3; ++k) {
       error[sheet.mesh.F(at->face, k)] += at->barycentric[k] * comparison.points[i].error_mm;
@@ -146,8 +146,7 @@ OperationResult run_thermoform_compare(const OperationCall& call, const Json& gi
     for (const OutputInfo& info : thermoform_compare_outputs())
       if (info.name == name) result.outputs.push_back(make_output(info, std::move(bytes)));
   };
-  if (call.wants("errors.ply"))
-    add("errors.ply", error_map(sheet, in_clamp, comparison, effects.print_scale, call.context));
+  if (call.wants("errors.ply")) add("errors.ply", error_map(sheet, in_clamp, comparison, effects, call.context));
   if (call.wants("residuals.csv")) add("residuals.csv", residuals(points, comparison));
   if (call.wants("sheet.ply")) add("sheet.ply", write_sheet_ply(sheet, 0, call.context));
   return result;

@@ -51,7 +51,7 @@ std::vector<ReportField> thermoform_texture_report_fields() {
        "Width and height of the picture: the whole number of pixels nearest to the size of the sheet."},
       {"picture_pixels", "Pixels", "", "Width and height of the picture in pixels."},
       {"dots_per_inch", "Resolution", "dpi",
-       "Resolution as stored in the picture file, which holds whole pixels per metre."},
+       "Resolution from side to side as stored in the picture file, which holds whole pixels per metre."},
       {"colours_used", "Colours", "", "Where the colours of the print came from."},
       {"pages", "Pages", "", "Number of pages in the PDF, including the template for the frame."},
       {"page_mm", "Page", "mm", "Width and height of a page."},
@@ -122,10 +122,10 @@ void report_print(Json& report, const TexturePrint& print, const PageLayout& lay
   const auto area = [&](Coverage c) { return print.area_mm2[static_cast<std::size_t>(c)]; };
   const double pixel_mm = print.grid.pixel_mm();
   report["sheet_mm"] = {options.sheet_x_mm, options.sheet_y_mm};
-  report["picture_mm"] = {print.grid.width * pixel_mm * options.sent_scale(),
-                          print.grid.height * pixel_mm * options.sent_scale()};
+  report["picture_mm"] = {print.grid.width * pixel_mm * options.sent_scale().x(),
+                          print.grid.height * pixel_mm * options.sent_scale().y()};
   report["picture_pixels"] = {print.grid.width, print.grid.height};
-  report["dots_per_inch"] = sent_per_metre(print.grid, options) * 0.0254;
+  report["dots_per_inch"] = sent_per_metre(print.grid, options).x() * 0.0254;
   report["colours_used"] = EnumNames<PrintColours>::names.at(static_cast<std::size_t>(print.colours));
   const bool has_template = options.marks && !registration_marks(options).empty();
   report["pages"] = layout.tiles.size() * (has_template ? 2 : 1);
@@ -150,10 +150,32 @@ void report_print(Json& report, const TexturePrint& print, const PageLayout& lay
   report["seconds_bleed"] = print.seconds_bleed;
 }
 
+/// Where files differ in size from the sheet: what the printer does to them.
+void add_sent_size(const Vec2& scale, std::vector<std::string>& sentences) {
+  const auto percent = [](double factor) { return with_max_decimals(100 * std::abs(1 - factor), 2) + " % "; };
+  if (scale.x() == scale.y()) {
+    if (scale.x() != 1)
+      sentences.push_back("The files are " + percent(scale.x()) + (scale.x() < 1 ? "smaller" : "larger") +
+                          " than the sheet, because the printer prints too " + (scale.x() < 1 ? "large." : "small."));
+    return;
+  }
+  const auto side = [&](double factor, const char* where) {
+    if (factor == 1) return;
+    sentences.push_back("The files are " + percent(factor) + (factor < 1 ? "shorter " : "longer ") + where +
+                        " than the sheet, because the printer prints too " + (factor < 1 ? "long" : "short") +
+                        " that way.");
+  };
+  side(scale.x(), "from side to side");
+  side(scale.y(), "from front to back");
+}
+
 OperationResult run_texture(const OperationCall& call, const Json& given) {
   Json parameters = merged_parameters(call, given);
-  if (const auto profile = machine_profile(call); profile && !given.contains("print_scale"))
-    parameters["print_scale"] = profile->measurement.print_scale;
+  if (const auto profile = machine_profile(call)) {
+    const Json measured = write_parameters(profile->measurement);
+    for (const char* const name : {"print_scale", "print_stretch_x", "print_stretch_y"})
+      if (!given.contains(name)) parameters[name] = measured[name];
+  }
   const auto options = read_parameters<ThermoformPrintOptions>(parameters);
   Context& context = call.context;
   // What can be refused at once is, before a simulation.
@@ -183,11 +205,7 @@ OperationResult run_texture(const OperationCall& call, const Json& given) {
   report_print(report, print, layout, options);
   std::vector<std::string> sentences = formed.placement.notes;
   sentences.insert(sentences.end(), print.sentences.begin(), print.sentences.end());
-  if (options.print_scale != 0)
-    sentences.push_back("The files are " + with_max_decimals(100 * std::abs(1 - options.sent_scale()), 2) + " % " +
-                        (options.print_scale > 0 ? "smaller" : "larger") +
-                        " than the sheet, because the printer prints too " +
-                        (options.print_scale > 0 ? "large." : "small."));
+  add_sent_size(options.sent_scale(), sentences);
   report["sentences"] = sentences;
 
   watch.lap();

@@ -145,6 +145,18 @@ TEST_CASE("ParameterFit.TakesWrongSensitivitiesAfreshIfItMay") {
   CHECK_THAT(fit_parameters(bag, problem, context, "").u[1], WithinAbs(0.5, 0.01));
 }
 
+TEST_CASE("ParameterFit.WithNothingFreeStaysWhereItIs") {
+  const ToyModel model = measured_toy();
+  SimulationBag bag(model);
+  Context context;
+  FitProblem problem = toy_problem(model, 0.3);
+  problem.free.clear();
+  const ParameterFit fit = fit_parameters(bag, problem, context, "");
+  CHECK(fit.u == problem.starts.front());
+  CHECK(fit.predictions.size() == 1);
+  CHECK(fit.value > 0);
+}
+
 /// Has answers below a tilt of `max_tilt` only.
 class ToyWithAnEdge : public ToyModel {
  public:

@@ -76,7 +76,6 @@ void FitInProgress::take(std::vector<std::optional<Predictions>> made) {
       } catch (const Error& error) {
         // At the edge of what can be simulated: with those of before it stays where it is.
         if (fit_.sensitivities.empty()) why_not_ = error;
-        if (fit_.sensitivities.empty()) fit_.free.clear();
         return;
       }
       probing_.reset();
@@ -133,8 +132,8 @@ Eigen::VectorXd FitInProgress::place_after(const Eigen::VectorXd& step) const {
 void FitInProgress::next_step() {
   wanted_.clear();
   promised_gain_ = 0;
-  if (iteration_++ >= problem_.options.max_iterations) return;
   const Eigen::Index k = probe_.size();
+  if (k == 0 || iteration_++ >= problem_.options.max_iterations) return;
   Eigen::VectorXd g, low(k), high(k);
   Eigen::MatrixXd H;
   problem_.objective->quadratic(residuals(model_, fit_.predictions), fit_.sensitivities, problem_.free, fit_.u, g, H);

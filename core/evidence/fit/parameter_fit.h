@@ -50,7 +50,7 @@ class FitInProgress {
   void stop() { wanted_.clear(); }
 
   /// False where the model has no answer at any start, or on either side of a parameter there: see why_not().
-  bool has_answer() const { return fit_.free.size() > 0; }
+  bool has_answer() const { return fit_.u.size() > 0 && !why_not_; }
   const std::optional<Error>& why_not() const { return why_not_; }
   /// Steps that were tried.
   int iterations() const { return iteration_; }

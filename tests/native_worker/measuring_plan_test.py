@@ -92,7 +92,9 @@ class MeasuringPlan(unittest.TestCase):
 
     def test_strong_causes_show_sooner_with_all_marks(self):
         causes = self.report["causes"]
-        self.assertEqual(len(causes), 14)
+        names = [cause["name"] for cause in causes]
+        self.assertEqual(len(set(names)), len(names))
+        self.assertLessEqual({"heating_gradient", "print_stretch_x", "scan_shift"}, set(names))
         for cause in causes:
             few, every = cause["min_visible_strength"], cause["best_visible_strength"]
             # What contact does differently about two materials can hide a cause from more marks, too.

@@ -114,12 +114,17 @@ TEST_CASE("ParameterFit.WhatIsHopelessStopsWhereItStands") {
   CHECK(fits[1].fit().value > 2 * fits[0].fit().value);
 }
 
-/// A straight line has no more to it than its slope: one step, and one that finds nothing.
-TEST_CASE("ParameterFit.GoesStraightToTheEndOfALine") {
+ToyModel tilted_toy() {
   ToyModel model(300);
   Eigen::VectorXd truth = model.nominal();
   truth[1] = 0.5;
   model.measure(truth, 0.02, 3);
+  return model;
+}
+
+/// A straight line has no more to it than its slope: one step, and one that finds nothing.
+TEST_CASE("ParameterFit.GoesStraightToTheEndOfALine") {
+  const ToyModel model = tilted_toy();
   SimulationBag bag(model);
   Context context;
   const std::vector<Sensitivities> slope =
@@ -132,10 +137,7 @@ TEST_CASE("ParameterFit.GoesStraightToTheEndOfALine") {
 }
 
 TEST_CASE("ParameterFit.TakesWrongSensitivitiesAfreshIfItMay") {
-  ToyModel model(300);
-  Eigen::VectorXd truth = model.nominal();
-  truth[1] = 0.5;
-  model.measure(truth, 0.02, 3);
+  const ToyModel model = tilted_toy();
   SimulationBag bag(model);
   Context context;
   std::vector<Sensitivities> wrong =

@@ -27,17 +27,14 @@ FitProblem Explanations::problem(const std::vector<int>& causes, std::vector<Eig
 std::vector<FitInProgress> Explanations::fitted(std::vector<FitProblem> problems) {
   std::vector<FitInProgress> fits;
   for (FitProblem& p : problems) fits.emplace_back(model_, std::move(p));
-  // A cause that is far behind may still be a good part of a pair.
-  if (pairs_) {
-    run_fits({&bag_}, fits, context_, fitting_stage);
-    return fits;
-  }
   run_fits({&bag_}, fits, context_, fitting_stage, [&](const FitInProgress& fit) {
+    // A cause that is far behind may still be a good part of a pair.
+    if (pairs_ || fit.iterations() <= judged_after) return false;
     double lowest = std::numeric_limits<double>::infinity();
     for (const Refit& r : refits_) lowest = std::min(lowest, r.fit.value);
     for (const FitInProgress& f : fits)
       if (f.has_answer()) lowest = std::min(lowest, f.fit().value);
-    return fit.iterations() > judged_after && fit.promised() > lowest + linear_error;
+    return fit.promised() > lowest + linear_error;
   });
   return fits;
 }

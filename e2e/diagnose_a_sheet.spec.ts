@@ -121,6 +121,28 @@ test(
   },
 );
 
+test('what has changed since a good part', async ({ page }) => {
+  await openObject(page);
+  await give(page, measuredObject(1, 0));
+  await expect(page.getByRole('button', { name: /^Object 2 196 points/ })).toBeVisible();
+  await page.getByRole('button', { name: 'What Object 2 is used for' }).click();
+  await page.getByRole('menuitemradio', { name: /^Good part/ }).click();
+  const good = page.getByRole('button', { name: /^Object 2 196 points, good part/ });
+  await expect(good).toBeVisible();
+  await quickly(page);
+  await run(page, 'Diagnose');
+  await expect(strip(page, 'Diagnosis ready')).toBeVisible(seen);
+  await expect(page.getByRole('button', { name: /^Uneven heating, side to side/ })).toBeVisible();
+  await expect(
+    page.getByText('What the simulation misses of the good part Object 2 is not counted.'),
+  ).toBeVisible();
+  await expectAccessible(page, 'beside a good part');
+  await expect(page.getByText('Saved', { exact: true })).toBeVisible();
+  await page.reload();
+  await expect(good).toBeVisible();
+  await expect(strip(page, 'Diagnosis ready')).toBeVisible();
+});
+
 test('a calibration says what the data do not tell, and takes what it fitted along', async ({ page }) => {
   await openObject(page);
   await page.getByRole('radio', { name: 'Calibrate' }).click();

@@ -26,8 +26,8 @@ const setup = {
 };
 const header = 'sheet_x_mm,sheet_y_mm,x_mm,y_mm,z_mm,sigma_mm';
 
-/** Rows of measured.csv without their header. */
-function simulated(): number[][] {
+/** Rows of measured.csv without their header. `gradient`: how much colder, so stiffer, the right side is. */
+function simulated(gradient: number): number[][] {
   const folder = mkdtempSync(join(tmpdir(), 'formwright-object-'));
   try {
     const places: number[][] = [];
@@ -37,7 +37,14 @@ function simulated(): number[][] {
     const flat = places.map(([x = 0, y = 0]) => [x, y, x, y, 1, 0.05].join());
     writeFileSync(join(folder, 'measured.csv'), [header, ...flat, ''].join('\n'));
     const out = join(folder, 'out');
-    const flags = ['--triangles', '1500', '--young-modulus-pa', '3.4e6', '--heating-gradient-x', '0.35'];
+    const flags = [
+      '--triangles',
+      '1500',
+      '--young-modulus-pa',
+      '3.4e6',
+      '--heating-gradient-x',
+      String(gradient),
+    ];
     execFileSync(program, ['thermoform-compare', '--object', folder, '--out', out, '--quiet', ...flags]);
     const rows = readFileSync(join(out, 'residuals.csv'), 'utf8').trim().split('\n').slice(1);
     return rows.map((row) => row.split(',').map(Number));
@@ -97,12 +104,13 @@ function noisy(rows: number[][]): number[][] {
   ]);
 }
 
-let points: number[][] | null = null;
+const points = new Map<number, number[][]>();
 
-/** The three files; `unit` 0.001 measures in metres by mistake. */
-export function measuredObject(unit = 1) {
-  points ??= noisy(simulated());
-  const rows = points.map(([x = 0, y = 0, ...place]) =>
+/** The three files; `unit` 0.001 measures in metres by mistake, `gradient` 0 is a part without fault. */
+export function measuredObject(unit = 1, gradient = 0.35) {
+  const known = points.get(gradient) ?? noisy(simulated(gradient));
+  points.set(gradient, known);
+  const rows = known.map(([x = 0, y = 0, ...place]) =>
     [x, y, ...place.map((value) => (unit * value).toFixed(7)), 0.05].join(),
   );
   return [

@@ -134,6 +134,23 @@ Predictions at_nominal(SimulationBag& bag, Calibration& result, Context& context
   return std::move(*nominal);
 }
 
+/// Fits from the nominal values or from `start`, and fills in all but the intervals.
+ParameterFit fitted(SimulationBag& bag, const Eigen::VectorXd& start, Calibration& result, Context& context) {
+  const ForwardModel& model = bag.model();
+  at_nominal(bag, result, context);
+  const auto span = context.span(0.05, 1, "Fitting");
+  std::vector<Eigen::VectorXd> starts{model.nominal()};
+  if (start.size() > 0) starts.push_back(start);
+  ParameterFit fit = fit_parameters(
+      bag, {mean_distance_objective(model, largest_noise(model, result.noise)), model.base_parameters(), starts},
+      context, "Fitting");
+  result.u = fit.u;
+  result.predictions = fit.predictions;
+  result.objective = fit.value;
+  result.error = mean_distance(model, residuals(model, fit.predictions));
+  return fit;
+}
+
 }  // namespace
 
 double mean_distance(const ForwardModel& model, const Predictions& left) {
@@ -146,24 +163,23 @@ double mean_distance(const ForwardModel& model, const Predictions& left) {
   return count > 0 ? sum / count : 0;
 }
 
+Calibration calibrate_quickly(SimulationBag& bag, Context& context, const Eigen::VectorXd& start) {
+  Stopwatch watch;
+  Calibration result;
+  fitted(bag, start, result, context);
+  result.simulations = bag.simulations();
+  result.seconds = watch.seconds();
+  return result;
+}
+
 Calibration calibrate(SimulationBag& bag, Context& context, const Eigen::VectorXd& start) {
   Stopwatch watch;
   const ForwardModel& model = bag.model();
   Calibration result;
-  at_nominal(bag, result, context);
-  ParameterFit fit;
-  {
-    const auto span = context.span(0.05, 0.6, "Fitting");
-    std::vector<Eigen::VectorXd> starts{model.nominal()};
-    if (start.size() > 0) starts.push_back(start);
-    fit = fit_parameters(
-        bag, {mean_distance_objective(model, largest_noise(model, result.noise)), model.base_parameters(), starts},
-        context, "Fitting");
-  }
-  result.u = fit.u;
-  result.predictions = fit.predictions;
-  result.objective = fit.value;
-  result.error = mean_distance(model, residuals(model, fit.predictions));
+  const ParameterFit fit = [&] {
+    const auto span = context.span(0, 0.6, "Fitting");
+    return fitted(bag, start, result, context);
+  }();
   {
     const auto span = context.span(0.6, 1, "Finding how certain each parameter is");
     // What another, equally good simulation would do differently is not known any better than that.

@@ -32,6 +32,9 @@ struct Calibration {
 /// Error{could_not_solve, cancelled}.
 Calibration calibrate(SimulationBag& bag, Context& context, const Eigen::VectorXd& start = {});
 
+/// The same without intervals: `profiles` stays empty.
+Calibration calibrate_quickly(SimulationBag& bag, Context& context, const Eigen::VectorXd& start = {});
+
 /// As in [Sch18]: `per_side` values of each of `grid_parameters` over `low` to `high` (values; as many as
 /// parameters), at each the best small translation of the mould by `place_parameters` (at most 2, each within `reach`
 /// of nominal, linearised about the nominal point).

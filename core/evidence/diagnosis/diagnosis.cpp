@@ -28,6 +28,8 @@ constexpr double sure_gain = 0.8;                 // probability that there is o
 constexpr double inseparable_likeness = 0.9;
 constexpr const char* stays_unexplained = "Part of the misfit stays unexplained.";
 constexpr const char* nearly_as_likely = "Another explanation is nearly as likely.";
+constexpr const char* other_material = "The material would have to be far from what was measured before.";
+constexpr double surprising = 3;  // prior standard deviations
 
 class Diagnostician {
  public:
@@ -187,6 +189,11 @@ class Diagnostician {
     if (result_.unexplained_after > max_structure * model_.known_misfit()) doubt(stays_unexplained);
     if (result_.held_out.after.mean > max_left * result_.noise_floor)
       doubt("On held-out data, the error is still more than twice the noise.");
+    for (const int p : model_.base_parameters()) {
+      const ModelParameter& parameter = model_.parameters()[static_cast<std::size_t>(p)];
+      if (parameter.was_measured && std::abs(result_.extended.u[p]) > surprising * parameter.prior_sd)
+        doubt(other_material);
+    }
     for (const int cause : result_.verdict) {
       const CauseFinding& finding = finding_of(cause);
       if (finding.probability < likely) doubt(nearly_as_likely);

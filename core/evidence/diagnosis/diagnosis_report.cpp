@@ -82,9 +82,13 @@ std::string verdict_sentence(const DiagnosisReport& report) {
     return std::find_if(d.causes.begin(), d.causes.end(), [&](const CauseFinding& f) { return f.cause == cause; })
         ->probability;
   };
-  if (d.reading == Reading::none) return "The calibrated simulation explains these data; they show no fault.";
+  const bool beside = !report.good_parts.empty();
+  if (d.reading == Reading::none)
+    return beside ? "Nothing has changed since the good part: these data show no fault."
+                  : "The calibrated simulation explains these data; they show no fault.";
   if (d.reading == Reading::unknown) {
-    std::string text = "The object differs from the simulation, and none of the known causes explains it.";
+    std::string text = std::string("The object differs from the ") + (beside ? "good part" : "simulation") +
+                       ", and none of the known causes explains it.";
     if (!d.verdict.empty()) text += " Nearest to it: " + label(d.verdict.front()) + ".";
     return text;
   }
@@ -191,6 +195,7 @@ Json diagnosis_json(const DiagnosisReport& report) {
                       {"gain_share", report.unseen->gain_share},
                       {"gain_interval", interval(report.unseen->gain_low, report.unseen->gain_high)}};
   if (!d.held_out_others.empty()) json["other_quantities"] = other_quantities_json(model, d);
+  if (!report.good_parts.empty()) json["good_parts"] = report.good_parts;
   json["noise_floor_mm"] = d.noise_floor;
   json["noise"] = noise_json(model, d);
   json["unexplained_before_mm"] = d.unexplained_before;

@@ -21,7 +21,8 @@ struct DiagnosisReport {
   std::optional<HeldOutGain> unseen;
   std::vector<std::string> unseen_names, notes;
   std::string unit = "mm";
-  SimulationChoice simulation{};  // which was chosen before causes were looked for
+  SimulationChoice simulation{};             // which was chosen before causes were looked for
+  std::vector<std::string> good_parts = {};  // names; what the simulation misses of them was added to its predictions
 };
 
 /// One sentence: what was found.

@@ -25,9 +25,10 @@ struct ModelParameter {
   ParameterRole role = ParameterRole::base;
   double nominal = 0, low = 0, high = 0;  // values
   bool logarithmic = false;
-  double prior_sd = 1;  // of u: how far from the nominal value it may well be
-  double usual_sd = 0;  // of an effect: how much of it there may be where nothing is wrong; 0: none
-  double probe = 0.1;   // a step in u that moves predictions visibly, and still about linearly
+  double prior_sd = 1;        // of u: how far from the nominal value it may well be
+  double usual_sd = 0;        // of an effect: how much of it there may be where nothing is wrong; 0: none
+  bool was_measured = false;  // nominal value and prior_sd are what was found before: far from them is a surprise
+  double probe = 0.1;         // a step in u that moves predictions visibly, and still about linearly
 
   double value(double u) const;
   double coordinate(double value) const;

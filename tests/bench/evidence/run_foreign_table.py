@@ -3,7 +3,7 @@
 """Forms objects in the foreign laboratory and diagnoses them, one line of JSON each; continues where it was stopped.
 
 run_foreign_table.py FOREIGN_LABORATORY FORMWRIGHT RESULTS.jsonl [--seeds N] [--noise MM] [--points N] [--folder DIR] [--jobs N] [--pairs] [--triangles N]
-                     [--only CAUSE] [--mould NAME] [--known-machine]
+                     [--only CAUSE] [--mould NAME] [--known-machine] [--good-part]
 
 A round is one clean sheet of each mould and every cause once, strong; its seed decides which mould a cause is tried on, before anything is computed.
 Cases that RESULTS has are not done again, nor are failures hidden: they are lines with "error"."""
@@ -50,6 +50,8 @@ def run(command):
 
 
 def form(a, mould, cause, level, seed, out, *more):
+    if (out / "truth.json").exists():  # kept by --folder
+        return
     run([a.laboratory, "--mould", mould, "--cause", cause, "--level", str(level), "--noise", str(a.noise), "--points", str(a.points), "--seed", str(seed), "--out", str(out),
          *more])
 
@@ -63,9 +65,16 @@ def machine_in_order(a, seed, mould, folder):
     return ["--profile", str(reference / "calibrated" / "profile.json")]
 
 
+def good_part(a, seed, mould, folder):
+    """One sheet without fault of the same machine and plastic over the same mould, with marks and noise of its own."""
+    good = folder / f"{mould}_good_{seed}"
+    form(a, mould, "none", 1, 700_000 + seed, good, "--world-seed", str(seed))
+    return ["--good", str(good)]
+
+
 def diagnosed(a, seed, mould, cause, level, folder):
     """One line: the hidden truth, what the diagnosis said and how long both took."""
-    line = {"seed": seed, "mould": mould, "cause": cause, "level": level, "noise_mm": a.noise, "points": a.points, "pairs": a.pairs, "triangles": a.triangles, "known_machine": a.known_machine}
+    line = {"seed": seed, "mould": mould, "cause": cause, "level": level, "noise_mm": a.noise, "points": a.points, "pairs": a.pairs, "triangles": a.triangles, "known_machine": a.known_machine, "good_part": a.good_part}
     item = folder / f"{mould}_{cause}_{seed}"
     try:
         start = time.monotonic()
@@ -75,10 +84,11 @@ def diagnosed(a, seed, mould, cause, level, folder):
         line |= {"in_the_list": truth["in_the_list"], "strength": truth["values"], "movement_mean_mm": truth["movement_mean_mm"]}
         start = time.monotonic()
         profile = machine_in_order(a, seed, mould, folder) if a.known_machine else []
+        known = good_part(a, seed, mould, folder) if a.good_part else []
         line["seconds_calibrating"] = round(time.monotonic() - start, 1)
         start = time.monotonic()
         run([a.formwright, "evidence-diagnose", "--object", str(item), "--out", str(item / "report"), "--separate", "off", "--pairs", "on" if a.pairs else "off", "--triangles",
-             str(a.triangles), *profile])
+             str(a.triangles), *profile, *known])
         line["seconds_diagnosing"] = round(time.monotonic() - start, 1)
         found = json.loads((item / "report" / "diagnosis.json").read_text())
         line |= {key: found[key] for key in ("verdict", "reading", "doubtful", "doubts", "error_before_mm", "error_after_mm", "noise_floor_mm", "unexplained_before_mm",
@@ -105,14 +115,15 @@ def main():
     parser.add_argument("--jobs", type=int, default=1, help="cases at a time")
     parser.add_argument("--pairs", action="store_true", help="also looks for two causes at once, which takes twice as long")
     parser.add_argument("--known-machine", action="store_true", help="diagnoses with a profile from when the machine was in order")
+    parser.add_argument("--good-part", action="store_true", help="diagnoses beside a sheet without fault over the same mould")
     parser.add_argument("--only", help="this cause alone, or none")
     parser.add_argument("--mould", help="this mould alone")
     a = parser.parse_args()
     moulds, causes = names(a.laboratory)
     lines = [json.loads(line) for line in a.results.read_text().splitlines()] if a.results.exists() else []
-    done = {(line["seed"], line["mould"], line["cause"], line["level"], line["noise_mm"], line["points"], line["pairs"], line.get("triangles", 5000), line.get("known_machine", False)) for line in lines if "error" not in line}
+    done = {(line["seed"], line["mould"], line["cause"], line["level"], line["noise_mm"], line["points"], line["pairs"], line.get("triangles", 5000), line.get("known_machine", False), line.get("good_part", False)) for line in lines if "error" not in line}
     todo = [case for case in cases(moulds, causes, a.seeds)
-            if (*case, a.noise, a.points, a.pairs, a.triangles, a.known_machine) not in done and a.only in (None, case[2]) and a.mould in (None, case[1])]
+            if (*case, a.noise, a.points, a.pairs, a.triangles, a.known_machine, a.good_part) not in done and a.only in (None, case[2]) and a.mould in (None, case[1])]
     print(f"{len(done)} done, {len(todo)} to do", flush=True)
     lock = threading.Lock()
 

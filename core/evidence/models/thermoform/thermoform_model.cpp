@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "numerics/local_kriging.h"
 #include "evidence/models/thermoform/cause_words.h"
 #include "evidence/models/thermoform/rim_thickness.h"
 
@@ -59,7 +60,10 @@ ThermoformModel::ThermoformModel(std::vector<FormedObject> objects, ThermoformMo
   // thing that tells a weak vacuum from a stiff sheet.
   constexpr double known_share = 0.3;
   for (ModelParameter& p : parameters_)
-    if (p.role == ParameterRole::base && options_.profile.parameters.contains(p.name)) p.prior_sd *= known_share;
+    if (p.role == ParameterRole::base && options_.profile.parameters.contains(p.name)) {
+      p.prior_sd *= known_share;
+      p.was_measured = options_.good_parts != nullptr;
+    }
   for (const FormedObject& object : objects_) add_places(object);
   for (int object = 0; object < static_cast<int>(objects_.size()); ++object) {
     std::vector<MeasuredThickness> rim = objects_[static_cast<std::size_t>(object)].thickness;
@@ -70,6 +74,11 @@ ThermoformModel::ThermoformModel(std::vector<FormedObject> objects, ThermoformMo
     rim.erase(within, rim.end());
     add_thickness(object, std::move(formed), ", thickness", known_thickness_misfit);
     add_thickness(object, std::move(rim), ", thickness of the rim", known_rim_misfit);
+  }
+  if (options_.good_parts) {
+    ThermoformModelOptions without = options_;
+    without.good_parts.reset();
+    in_order_ = std::make_unique<const ThermoformModel>(*options_.good_parts, std::move(without));
   }
   if (options_.triangles / 4 < fewest_triangles) return;
   ThermoformModelOptions coarse = options_;
@@ -288,8 +297,46 @@ Eigen::MatrixXd ThermoformModel::predict(int measurement, const Eigen::VectorXd&
   const double plate_z = own.setup.base_plate_end_z_mm;
   FormedSheet raised = *sheet;
   raised.mesh.V.col(2).array() += plate_z;
-  return predict_measured(raised, in_clamp(own.points, own.setup.sheet_turned), own.setup.measured_surface,
-                          o.clamp_height_mm + plate_z, o.sheet_thickness_mm, measurement_effects(u), plate_z);
+  Eigen::MatrixXd places =
+      predict_measured(raised, in_clamp(own.points, own.setup.sheet_turned), own.setup.measured_surface,
+                       o.clamp_height_mm + plate_z, o.sheet_thickness_mm, measurement_effects(u), plate_z);
+  if (in_order_) places += beside_simulation(object, u, context);
+  return places;
+}
+
+const Eigen::MatrixXd& ThermoformModel::beside_simulation(int object, const Eigen::VectorXd& u,
+                                                          const Context& context) const {
+  // An equally good simulation misses something else of a good part. Only what it makes of the change is uncertain.
+  Eigen::VectorXd in_order = nominal();
+  std::vector<int> discrepancies;
+  for (const int p : parameters_with(ParameterRole::discrepancy))
+    if (u[p] >= 0.5) {
+      in_order[p] = 1;
+      discrepancies.push_back(p);
+    }
+  const std::scoped_lock lock(beside_mutex_);
+  const auto [known, is_new] = beside_.try_emplace({object, discrepancies});
+  Eigen::MatrixXd& beside = known->second;
+  if (!is_new) return beside;
+  const FormedObject& own = objects_[static_cast<std::size_t>(object)];
+  const std::vector<FormedObject>& parts = in_order_->objects();
+  beside = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(own.points.size()), 3);
+  int count = 0;
+  try {
+    for (std::size_t part = 0; part < parts.size(); ++part) {
+      if (parts[part].key != own.key) continue;
+      const Eigen::MatrixXd left =
+          in_order_->measurements()[part].measured - in_order_->predict(static_cast<int>(part), in_order, context);
+      beside += LocalKriging(in_clamp(parts[part].points, parts[part].setup.sheet_turned), left)
+                    .read(in_clamp(own.points, own.setup.sheet_turned));
+      ++count;
+    }
+  } catch (...) {
+    beside_.erase(known);
+    throw;
+  }
+  // What differs among several is no fault of the simulation.
+  return beside /= std::max(1, count);
 }
 
 std::string ThermoformModel::in_words(int cause, const std::vector<double>& values) const {

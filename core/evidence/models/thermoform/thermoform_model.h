@@ -6,6 +6,7 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <utility>
 
 #include "evidence/fit/forward_model.h"
 #include "evidence/models/thermoform/formed_object.h"
@@ -21,6 +22,9 @@ struct ThermoformModelOptions {
   MachineProfile profile;               // what is known of the machine; empty where nothing is
   std::vector<std::string> without;     // causes that are not considered
   std::vector<std::string> extensions;  // by name: what the simulation does beside what set-up and profile say
+  /// Parts from when the machine was in order, as `profile` describes it (good_part.h). What the simulation misses of
+  /// one is added to what it predicts of objects over the same mould.
+  std::shared_ptr<const std::vector<FormedObject>> good_parts;
 };
 
 /// A parameter that a fit varies, with the range, where narrower than its own, and the coordinate of ModelParameter.
@@ -82,6 +86,9 @@ class ThermoformModel : public ForwardModel {
 
  private:
   void add_places(const FormedObject& object);
+  /// What good parts over the same mould have beside the simulation with the discrepancies of u, at an object's marks;
+  /// n x 3, all 0 where there is no such part.
+  const Eigen::MatrixXd& beside_simulation(int object, const Eigen::VectorXd& u, const Context& context) const;
   void add_thickness(int object, std::vector<MeasuredThickness> readings, const char* what, double misfit_share);
   SheetSimulation simulation_of(int object, const Eigen::VectorXd& u) const;
   /// Parameters by name, as the object's set-up, the profile and the extensions have them.
@@ -99,6 +106,9 @@ class ThermoformModel : public ForwardModel {
   mutable std::map<std::string, std::unique_ptr<const ThermoformModel>> extended_;
   mutable std::vector<std::shared_ptr<const Bytes>> packed_moulds_;  // of the objects; null until a task needs them
   mutable std::map<std::string, std::shared_ptr<const FormedSheet>> sheets_;
+  std::unique_ptr<const ThermoformModel> in_order_;  // of the good parts
+  mutable std::mutex beside_mutex_;
+  mutable std::map<std::pair<int, std::vector<int>>, Eigen::MatrixXd> beside_;  // per object and discrepancies
 };
 
 /// The parameters that a diagnosis varies, base first, and the causes they belong to.

@@ -44,6 +44,8 @@ std::vector<ReportField> diagnosis_report_fields() {
       {"gain_interval", "Interval of the gain", "", "95 % interval of the gain."},
       {"held_out", "Held-out data", "", "Which data were held out to measure the errors, as a sentence."},
       {"unseen", "Validation objects", "", "Errors before and after on objects that were not used for fitting."},
+      {"good_parts", "Good parts", "",
+       "Names of the good parts that were given: what the simulation misses of them was added to what it predicts."},
       {"other_quantities", "Thickness", "",
        "Mean errors of the thickness, where it was measured, on held-out data: before and after the named causes are included."},
       {"noise_floor_mm", "Noise floor", "mm", "Mean distance that measuring noise alone would give."},

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <cmath>
 
+#include "base/format.h"
 #include "evidence/diagnosis/unseen.h"
+#include "evidence/models/thermoform/good_part.h"
 #include "evidence/models/thermoform/proposals.h"
 #include "job/contract/operation_options.h"
 #include "job/operations/evidence/diagnosis_result.h"
@@ -116,22 +118,34 @@ OperationResult run_evidence_diagnose(const OperationCall& call, const DiagnoseO
   ThermoformModelOptions options;
   options.triangles = o.triangles;
   options.profile = read_profile_input(call);
-  std::vector<FormedObject> unseen, objects;
+  std::vector<FormedObject> unseen, objects, good_parts;
   {
     const auto span = call.context.span(0, 0.01, "Reading the objects");
     unseen = read_formed_objects(call, "unseen");
     objects = read_formed_objects(call, "object");
+    good_parts = read_formed_objects(call, "good");
+    check_good_parts(good_parts, objects);
   }
-  const ThermoformModel usual(std::move(objects), options);
   // An object that cannot be formed is refused before the fits, which take minutes.
   std::unique_ptr<const ThermoformModel> other;
   if (!unseen.empty()) {
     const auto span = call.context.span(0.01, 0.02, "Simulating the validation object");
-    other = std::make_unique<const ThermoformModel>(std::move(unseen), options);
+    other = std::make_unique<const ThermoformModel>(unseen, options);
     for (std::size_t i = 0; i < other->objects().size(); ++i)
       other->predict(static_cast<int>(i), other->nominal(), call.context);
   }
+  std::optional<MachineInOrder> in_order;
+  if (!good_parts.empty()) {
+    const auto span = call.context.span(0.02, 0.25, "Looking at the good part");
+    in_order = machine_in_order(good_parts, options, call.context);
+    options.profile = in_order->profile;
+    options.good_parts = std::make_shared<const std::vector<FormedObject>>(std::move(good_parts));
+    if (other) other = std::make_unique<const ThermoformModel>(std::move(unseen), options);
+  }
+  const ThermoformModel usual(std::move(objects), options);
   const SimulationChoice choice = [&] {
+    // What the simulation misses of a good part needs no other simulation to account for it.
+    if (in_order) return SimulationChoice{};
     const auto span = call.context.span(0.02, 0.25, "Choosing the simulation");
     return choose_simulation(usual.for_choosing(), call.context);
   }();
@@ -146,7 +160,7 @@ OperationResult run_evidence_diagnose(const OperationCall& call, const DiagnoseO
     diagnosis = diagnose(bag, own, call.context);
   }
   DiagnosisReport report{model, diagnosis, {}, std::nullopt, {}, {}};
-  report.simulation = choice;
+  report.simulation = in_order ? in_order->choice : choice;
   if (!diagnosis.not_separable.empty()) {
     const auto span = call.context.span(0.85, 0.95, "Looking for a measurement that distinguishes them");
     std::vector<ProposedMeasurement> proposals;
@@ -169,6 +183,15 @@ OperationResult run_evidence_diagnose(const OperationCall& call, const DiagnoseO
   if (diagnosis.looked_again)
     report.notes.push_back("A sheet of " + std::to_string(o.triangles) +
                            " triangles did not decide it: looked at again on twice as many.");
+  if (in_order) {
+    for (const FormedObject& part : *options.good_parts) report.good_parts.push_back(part.name);
+    for (const std::string& name : report.good_parts)
+      report.notes.push_back("What the simulation misses of the good part " + name + ", " +
+                             with_digits(in_order->error_mm, 2) +
+                             " mm on average with noise, was added to what it predicts.");
+    if (const std::string note = change_of_stiffness(model, diagnosis.extended.u); !note.empty())
+      report.notes.push_back(note);
+  }
   for (const FormedObject& object : model.objects())
     for (const std::string& note : object.setup.notes) report.notes.push_back(object.name + ": " + note);
 
@@ -204,6 +227,10 @@ Operation evidence_diagnose_operation() {
       object_input_info(
           "unseen", "Validation object",
           "Another folder of the same kind for validation: it is not used for fitting, only to measure the gain.",
+          false, true),
+      object_input_info(
+          "good", "Good part",
+          "Another folder of the same kind, over the same mould, from when the machine was in order. What has changed since is then found, whatever else the simulation gets wrong.",
           false, true),
       profile_input_info()};
   operation.outputs = evidence_diagnose_outputs();

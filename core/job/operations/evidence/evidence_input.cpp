@@ -70,7 +70,7 @@ std::vector<FormedObject> read_formed_objects(const OperationCall& call, const s
 
 void require_each_once(const OperationCall& call, const std::string& file) {
   std::map<Bytes, std::string> names;  // by content
-  for (const char* role : {"object", "unseen"})
+  for (const char* role : {"object", "unseen", "good"})
     for (const auto& [own, input] : inputs_named(call, role)) {
       const std::string name = pack_name(*input, own);
       const auto [before, is_new] = names.emplace(unpack_files(*input, own, {file}, call.context).at(file), name);

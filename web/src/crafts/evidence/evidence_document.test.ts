@@ -40,6 +40,23 @@ describe('evidence in a project', () => {
     expect(usesIn(key, [bowl, box])).toBeNull();
   });
 
+  it('compares with a good part, and finds it back', () => {
+    const june = object('June', 'd', 'good');
+    const subject = subjectOf({ mode: 'diagnose', objects: [lamp, bowl, june] });
+    expect(Object.keys(subject?.inputs ?? {})).toEqual(['object', 'unseen', 'good']);
+    const then = usesIn(
+      subject?.key ?? '',
+      [june, lamp, bowl].map((one) => ({ ...one, use: 'off' as const })),
+    );
+    expect(then?.objects.map(({ use }) => use)).toEqual(['good', 'fit', 'unseen']);
+    expect(usesIn(subject?.key ?? '', [lamp, bowl])).toBeNull();
+    // Results from before there were good parts are known by the same key.
+    expect(subjectOf({ mode: 'diagnose', objects: [lamp, bowl] })?.key.split(' ')).toHaveLength(3);
+    expect(Object.keys(subjectOf({ mode: 'calibrate', objects: [lamp, june] })?.inputs ?? {})).toEqual([
+      'object',
+    ]);
+  });
+
   it('takes back and repeats what was done with objects; results stay', () => {
     const history = new History<ProjectDocument>(newDocument('1', 'One', 0));
     history.do(evidence.addObject(lamp));

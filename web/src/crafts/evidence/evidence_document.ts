@@ -15,8 +15,8 @@ export const photographing = 'evidence-photographs';
 export const planning = 'evidence-plan-points';
 
 export type Mode = 'diagnose' | 'calibrate';
-/** `unseen`: only to measure the gain on. */
-export type Use = 'fit' | 'unseen' | 'off';
+/** `unseen`: only to measure the gain on. `good`: from when the machine was in order. */
+export type Use = 'fit' | 'unseen' | 'good' | 'off';
 
 export const objectFiles = ['mould.obj', 'setup.json', 'measured.csv'] as const;
 export type ObjectFile = (typeof objectFiles)[number];
@@ -97,12 +97,21 @@ const numbered = (name: string, objects: readonly MeasuredObject[]): [string, Jo
 /** What a run is about; null while no object is fitted. */
 export function subjectOf({ mode, objects }: Pick<EvidenceDocument, 'mode' | 'objects'>): Subject | null {
   const fit = used(objects, 'fit');
-  const unseen = mode === 'diagnose' ? used(objects, 'unseen') : [];
+  const [unseen, good] = (['unseen', 'good'] as const).map((use) =>
+    mode === 'diagnose' ? used(objects, use) : [],
+  ) as [MeasuredObject[], MeasuredObject[]];
   if (fit.length === 0) return null;
   const hashes = (list: readonly MeasuredObject[]) => list.map(({ pack }) => pack.blob).join('+');
   return {
-    key: [operationOf(mode), hashes(fit), hashes(unseen)].join(' '),
-    inputs: Object.fromEntries([...numbered('object', fit), ...numbered('unseen', unseen)]),
+    // Without a good part as in projects kept before there were any.
+    key: [operationOf(mode), hashes(fit), hashes(unseen), ...(good.length > 0 ? [hashes(good)] : [])].join(
+      ' ',
+    ),
+    inputs: Object.fromEntries([
+      ...numbered('object', fit),
+      ...numbered('unseen', unseen),
+      ...numbered('good', good),
+    ]),
   };
 }
 
@@ -111,13 +120,19 @@ export function usesIn(
   key: string,
   objects: readonly MeasuredObject[],
 ): { readonly mode: Mode; readonly objects: readonly MeasuredObject[] } | null {
-  const [operation = '', fit = '', unseen = ''] = key.split(' ');
-  const [fitted, others] = [fit, unseen].map((list) => list.split('+').filter(Boolean));
-  if (!fitted || !others) return null;
+  const [operation = '', ...lists] = key.split(' ');
+  const uses: readonly Use[] = ['fit', 'unseen', 'good'];
+  const useOfHash = new Map(
+    uses.flatMap((use, i) =>
+      (lists[i] ?? '')
+        .split('+')
+        .filter(Boolean)
+        .map((hash) => [hash, use] as const),
+    ),
+  );
   const known = new Set(objects.map(({ pack }) => pack.blob));
-  if (![...fitted, ...others].every((hash) => known.has(hash))) return null;
-  const useOf = ({ pack }: MeasuredObject): Use =>
-    fitted.includes(pack.blob) ? 'fit' : others.includes(pack.blob) ? 'unseen' : 'off';
+  if (![...useOfHash.keys()].every((hash) => known.has(hash))) return null;
+  const useOf = ({ pack }: MeasuredObject): Use => useOfHash.get(pack.blob) ?? 'off';
   return {
     mode: operation === diagnosing ? 'diagnose' : 'calibrate',
     objects: objects.map((object) => ({ ...object, use: useOf(object) })),

@@ -26,12 +26,14 @@ const modes = [
 const useNames: Readonly<Record<Use, string>> = {
   fit: 'Use for fitting',
   unseen: 'Keep for checking: not used for fitting',
+  good: 'Good part: from when all was in order',
   off: 'Leave out',
 };
 
 const useWords: Readonly<Record<Use, string>> = {
   fit: '',
   unseen: ', kept for checking',
+  good: ', good part',
   off: ', left out',
 };
 
@@ -146,7 +148,8 @@ export function shortNumber(value: number): string {
 
 function ObjectRow({ session, object }: { session: EvidenceSession; object: MeasuredObject }) {
   const { projects } = session.services;
-  const uses: readonly Use[] = session.mode.value === 'diagnose' ? ['fit', 'unseen', 'off'] : ['fit', 'off'];
+  const uses: readonly Use[] =
+    session.mode.value === 'diagnose' ? ['fit', 'unseen', 'good', 'off'] : ['fit', 'off'];
   const chosen = session.chosen.value?.id === object.id;
   return (
     <li class="object-row">

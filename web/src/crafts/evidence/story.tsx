@@ -23,6 +23,9 @@ export function Story({ session, diagnosis }: { session: EvidenceSession; diagno
           {residuals
             ? `Measured and simulated sheet are ${length(meanOf(distancesOf(residuals, 'base')))} apart on average, with the material calibrated. Noise alone would leave ${length(diagnosis.noiseFloor_mm)}.`
             : `Noise alone would leave ${length(diagnosis.noiseFloor_mm)}.`}
+          {diagnosis.goodParts.length > 0
+            ? ` What the simulation misses of the good part ${diagnosis.goodParts.join(', ')} is not counted.`
+            : ''}
         </Step>
         {residuals ? <Step title="Where">{whereWords(residuals)}</Step> : null}
         {diagnosis.extensions.length > 0 ? (

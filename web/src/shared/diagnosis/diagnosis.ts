@@ -89,6 +89,8 @@ export interface Diagnosis {
     readonly before_mm: number;
     readonly after_mm: number;
   }[];
+  /** Names of parts from when the machine was in order, that it was compared beside. */
+  readonly goodParts: readonly string[];
   readonly notes: readonly string[];
   readonly simulations: number | null;
 }
@@ -196,6 +198,7 @@ export function readDiagnosis(report: Report): Diagnosis {
         before_mm: number(one['error_before_mm']),
         after_mm: number(one['error_after_mm']),
       })),
+    goodParts: sentences(report, 'good_parts'),
     notes: sentences(report, 'notes'),
     simulations: figure(report, 'simulations'),
   };

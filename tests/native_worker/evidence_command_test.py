@@ -124,6 +124,22 @@ class Evidence(unittest.TestCase):
         self.run_program(*words, "--results", shared, "--out", self.folder / "again")
         self.assertEqual({p.name for p in shared.iterdir() if len(p.name) == 64}, kept)
 
+    def test_a_good_part_shows_what_has_changed(self):
+        out = self.folder / "beside"
+        words = ("--triangles", 500, "--pairs", "off", "--separate", "off", "--out", out)
+        self.run_program("evidence-diagnose", "--object", self.shifted, "--good", self.object, *words)
+        diagnosis = json.loads((out / "diagnosis.json").read_text())
+        self.assertEqual(diagnosis["verdict"], ["scan_shift"])
+        self.assertEqual(diagnosis["good_parts"], ["lamp"])
+        self.assertAlmostEqual(diagnosis["causes"][0]["values"]["scan_shift_x_mm"], 1.5, delta=0.1)
+        # Of the same marks not even the noise is left, 0.064 mm on average; the coarse simulation alone misses far more.
+        self.assertLess(diagnosis["error_after_mm"], 0.064)
+        self.assertIn("What the simulation misses of the good part lamp", (out / "diagnosis.html").read_text())
+        self.expect_refused("has the same measured.csv as", "evidence-diagnose", "--object", self.object, "--good", self.object, *words)
+        elsewhere = self.write(self.folder / "elsewhere", self.points[1:])
+        (elsewhere / "mould.obj").write_text(MOULD.replace("25\nf", "26\nf"))
+        self.expect_refused("elsewhere: this good part was formed over another mould", "evidence-diagnose", "--object", self.shifted, "--good", elsewhere, *words)
+
     def test_a_diagnosis_names_the_shift(self):
         out = self.folder / "diagnosed"
         # Another sheet, scanned on the same bench.

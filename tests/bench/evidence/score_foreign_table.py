@@ -67,9 +67,10 @@ def main():
     for name in a.files:
         with open(name) as file:
             for line in map(json.loads, filter(str.strip, file)):
-                latest[line["seed"], line["mould"], line["cause"], line["level"], line["noise_mm"], line["points"], line["pairs"], line.get("known_machine", False)] = line
+                latest[line["seed"], line["mould"], line["cause"], line["level"], line["noise_mm"], line["points"], line["pairs"], line.get("known_machine", False), line.get("good_part", False)] = line
     everything = sorted(latest.values(), key=lambda c: (c["cause"], c["mould"], c["seed"]))
-    cases = [c for c in everything if not c.get("known_machine")]
+    cases = [c for c in everything if not c.get("known_machine") and not c.get("good_part")]
+    beside = [c for c in everything if c.get("good_part")]
     known = [c for c in everything if c.get("known_machine")]
     strong = [c for c in cases if c["level"] == 1]
     print("""# The diagnosis on sheets of another laboratory
@@ -93,10 +94,7 @@ Sheets that `tests/foreign_laboratory` formed, with a simulation of another kind
           "measure of how often the diagnosis is right.")
     table("By cause", [(cause, [c for c in strong if c["cause"] == cause]) for cause in sorted({c["cause"] for c in strong} - {"none"})
                        if all(c.get("in_the_list", True) for c in strong if c["cause"] == cause)])
-    foreign = [c for c in strong if not c.get("in_the_list", True)]
-    if foreign:
-        careful = sum(1 for c in foreign if "error" not in c and (not named(c) or c["doubtful"]))
-        print(f"\nA cause that is in no list (`scan_stretch`): unknown, none or in doubt in {share_of(careful, len(foreign))}.")
+    tell_of_causes_in_no_list(strong)
     good = [c for c in cases if "error" not in c]
     if good:
         clean = [c["error_before_mm"] for c in good if c["cause"] == "none"]
@@ -106,10 +104,22 @@ Sheets that `tests/foreign_laboratory` formed, with a simulation of another kind
         print(f"\nMedian wall time of a case, with whatever else the machine did: {statistics.median(c['seconds_forming'] for c in good if c['seconds_forming']):.0f} s to form, "
               f"{statistics.median(c['seconds_diagnosing'] for c in good):.0f} s to diagnose. Failed: {len(cases) - len(good)}.")
     list_answers("Every answer", cases)
+    if beside:
+        table("Beside a good part", by_mould([c for c in beside if c["level"] == 1]))
+        tell_of_causes_in_no_list(beside)
+        print("\nA sheet without fault over the same mould, of the same machine and plastic, with marks and noise of its own, was given as a good part (`--good-part`).")
+        list_answers("Every answer beside a good part", beside)
     if known:
         table("With a profile from when the machine was in order", by_mould([c for c in known if c["level"] == 1]))
         print("\nOne sheet without fault over another mould, of the same machine and plastic, was measured and calibrated first (`--known-machine`); the diagnosis got that profile.")
         list_answers("Every answer with a profile", known)
+
+
+def tell_of_causes_in_no_list(cases):
+    foreign = [c for c in cases if not c.get("in_the_list", True)]
+    if foreign:
+        careful = sum(1 for c in foreign if "error" not in c and (not named(c) or c["doubtful"]))
+        print(f"\nA cause that is in no list (`scan_stretch`): unknown, none or in doubt in {share_of(careful, len(foreign))}.")
 
 
 def by_mould(cases):

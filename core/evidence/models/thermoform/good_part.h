@@ -2,7 +2,6 @@
 #pragma once
 // A part from when the machine was in order. What the simulation misses of it, it misses of the next over the same
 // mould as well, and no cause is to be blamed for that: what has changed since is what a diagnosis looks for.
-#include <string>
 #include <vector>
 
 #include "evidence/diagnosis/simulation_choice.h"
@@ -22,9 +21,5 @@ MachineInOrder machine_in_order(const std::vector<FormedObject>& good_parts, con
 
 /// Throws Error{invalid_input, "good"} where a part was formed over a mould that is none of the objects'.
 void check_good_parts(const std::vector<FormedObject>& good_parts, const std::vector<FormedObject>& objects);
-
-/// A sentence where the sheet that is simulated at `u` is clearly stiffer or softer than that of the good part; else
-/// empty. `model` has the good part's material as its nominal point.
-std::string change_of_stiffness(const ThermoformModel& model, const Eigen::VectorXd& u);
 
 }  // namespace formwright

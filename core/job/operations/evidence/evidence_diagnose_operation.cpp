@@ -189,8 +189,6 @@ OperationResult run_evidence_diagnose(const OperationCall& call, const DiagnoseO
       report.notes.push_back("What the simulation misses of the good part " + name + ", " +
                              with_digits(in_order->error_mm, 2) +
                              " mm on average with noise, was added to what it predicts.");
-    if (const std::string note = change_of_stiffness(model, diagnosis.extended.u); !note.empty())
-      report.notes.push_back(note);
   }
   for (const FormedObject& object : model.objects())
     for (const std::string& note : object.setup.notes) report.notes.push_back(object.name + ": " + note);

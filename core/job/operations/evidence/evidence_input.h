@@ -16,8 +16,8 @@ InputInfo object_input_info(const std::string& name, const std::string& label, c
 /// is wrong with which.
 std::vector<FormedObject> read_formed_objects(const OperationCall& call, const std::string& name);
 
-/// Throws Error{invalid_input} where two of the inputs "object" and "unseen" hold the same measurement, the pack's
-/// `file`: it would count double, or the gain be measured on what was fitted.
+/// Throws Error{invalid_input} where two of the inputs "object", "unseen" and "good" hold the same measurement, the
+/// pack's `file`: it would count double, or the gain be measured on what was fitted.
 void require_each_once(const OperationCall& call, const std::string& file);
 
 /// The input "profile", or an empty profile.

@@ -4,7 +4,6 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <vector>
 
@@ -41,12 +40,12 @@ LocalKriging::LocalKriging(const Eigen::MatrixX2d& place, const Eigen::MatrixXd&
   if (place_.rows() < 2) return;
   const double extent = std::max((place_.colwise().maxCoeff() - place_.colwise().minCoeff()).maxCoeff(), 1e-12);
   const auto choose = [&] {
-    double least = mean_error(nullptr, nullptr);
+    double least = mean_error(nullptr);
     smooth_ = false;
     for (const double length : lengths)
       for (const double noise : noises) {
         const Model model{length * extent, noise};
-        const double error = mean_error(&model, nullptr);
+        const double error = mean_error(&model);
         if (!(error < least)) continue;
         least = error;
         model_ = model;
@@ -56,15 +55,14 @@ LocalKriging::LocalKriging(const Eigen::MatrixX2d& place, const Eigen::MatrixXd&
     if (!smooth_) model_ = {max_distance * extent, 0};
   };
   choose();
-  if (!smooth_ || place_.rows() > max_judged) return;
-  std::vector<double> errors;
-  mean_error(&model_, &errors);
+  if (!smooth_) return;
+  const std::vector<double> errors = errors_of(&model_, 1);
   std::vector<double> sorted = errors;
   std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
-  const double most = outlier * sorted[sorted.size() / 2];
+  const double max_error = outlier * sorted[sorted.size() / 2];
   std::vector<Eigen::Index> kept;
   for (std::size_t i = 0; i < errors.size(); ++i)
-    if (errors[i] <= most) kept.push_back(order[i]);
+    if (errors[i] <= max_error) kept.push_back(order[i]);
   outliers_ = static_cast<int>(errors.size() - kept.size());
   if (outliers_ == 0) return;
   take(kept);
@@ -124,20 +122,22 @@ Eigen::RowVectorXd LocalKriging::read_one(const Eigen::RowVector2d& at, const st
   return among.selfadjointView<Eigen::Lower>().llt().solve(to).transpose() * values;
 }
 
-double LocalKriging::mean_error(const Model* model, std::vector<double>* errors) const {
-  const Eigen::Index n = place_.rows(), stride = (n + max_judged - 1) / max_judged, judged = (n + stride - 1) / stride;
-  std::vector<double> list(static_cast<std::size_t>(judged));
-  parallel_for(list.size(), 128, [&](std::size_t begin, std::size_t end) {
+std::vector<double> LocalKriging::errors_of(const Model* model, Eigen::Index stride) const {
+  std::vector<double> errors(static_cast<std::size_t>((place_.rows() + stride - 1) / stride));
+  parallel_for(errors.size(), 128, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Eigen::Index row = stride * static_cast<Eigen::Index>(i);
       Eigen::RowVectorXd left = value_.row(row);
       if (model != nullptr) left -= read_one(place_.row(row), nearest(place_.row(row), static_cast<int>(row)), *model);
-      list[i] = left.norm();
+      errors[i] = left.norm();
     }
   });
-  const double sum = std::accumulate(list.begin(), list.end(), 0.0);
-  if (errors != nullptr) *errors = std::move(list);
-  return sum / static_cast<double>(judged);
+  return errors;
+}
+
+double LocalKriging::mean_error(const Model* model) const {
+  const std::vector<double> errors = errors_of(model, (place_.rows() + max_judged - 1) / max_judged);
+  return std::accumulate(errors.begin(), errors.end(), 0.0) / static_cast<double>(errors.size());
 }
 
 Eigen::MatrixXd LocalKriging::read(const Eigen::MatrixX2d& at) const {

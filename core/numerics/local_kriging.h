@@ -2,6 +2,7 @@
 #pragma once
 // A field known at scattered places, read at others: kriging from the nearest few [Cre93].
 #include <Eigen/Core>
+#include <vector>
 
 namespace formwright {
 
@@ -10,8 +11,8 @@ namespace formwright {
 class LocalKriging {
  public:
   /// `place` (n x 2, any unit) and `value` (n x d). Length and share of noise are those of a grid that predict each
-  /// value best from its neighbours (smallest mean distance of at most 2,000 of them), zero everywhere among them.
-  /// What neighbours predict worst of all, by more than six times the median, is left out as an outlier.
+  /// value best from its neighbours (smallest mean distance of about 2,000 of them), zero everywhere among them.
+  /// What is farther from its neighbours' prediction than six times the median is left out as an outlier.
   LocalKriging(const Eigen::MatrixX2d& place, const Eigen::MatrixXd& value);
 
   /// k x d, at `at` (k x 2).
@@ -28,7 +29,9 @@ class LocalKriging {
   /// Of what is known, the nearest to `at`, without number `left_out`.
   std::vector<int> nearest(const Eigen::RowVector2d& at, int left_out) const;
   Eigen::RowVectorXd read_one(const Eigen::RowVector2d& at, const std::vector<int>& from, const Model& model) const;
-  double mean_error(const Model* model, std::vector<double>* errors) const;
+  /// How far every `stride`-th value is from what its neighbours predict by `model`, or by null from zero.
+  std::vector<double> errors_of(const Model* model, Eigen::Index stride) const;
+  double mean_error(const Model* model) const;
 
   Eigen::MatrixX2d place_;  // ascending by x
   Eigen::MatrixXd value_;

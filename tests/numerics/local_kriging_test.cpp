@@ -77,7 +77,17 @@ TEST_CASE("LocalKriging.noise_is_smoothed_and_outliers_are_left_out") {
   for (int k = 0; k < 15; ++k) value.row(100 * k).array() += 20;
   const LocalKriging with_outliers(place, value);
   CHECK(with_outliers.outliers() >= 15);
+  CHECK(with_outliers.outliers() <= 20);
   CHECK(mean_length(with_outliers.read(place) - truth) < 1.1 * mean_length(noisy.read(place) - truth));
+}
+
+TEST_CASE("LocalKriging.of_many_places_too_outliers_are_left_out") {
+  const Eigen::MatrixX2d place = scattered(9000, 12);
+  Eigen::MatrixXd value = waves(place);
+  for (int k = 1; k <= 40; ++k) value.row(200 * k + 1).array() -= 30;
+  const LocalKriging field(place, value);
+  CHECK(field.outliers() >= 40);
+  CHECK(mean_length(field.read(place) - waves(place)) < 0.05);
 }
 
 TEST_CASE("LocalKriging.what_has_no_course_is_read_only_where_it_is_known") {

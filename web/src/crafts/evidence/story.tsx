@@ -3,7 +3,7 @@
 import type { ComponentChildren } from 'preact';
 import { Button, formatNumber, withUnit } from '../../ui';
 import type { Diagnosis } from '../../shared/diagnosis/diagnosis';
-import { extensionWords, sureWords, whyWords } from '../../shared/diagnosis/diagnosis_words';
+import { extensionWords, goodPartWords, sureWords, whyWords } from '../../shared/diagnosis/diagnosis_words';
 import type { EvidenceSession } from './evidence_session';
 import type { Residuals } from './pictures/residuals';
 import { minPrintPoints } from './pictures/print_picture';
@@ -56,7 +56,7 @@ export function Story({ session, diagnosis }: { session: EvidenceSession; diagno
           ) : null}
         </Step>
         <Step title="How sure">
-          {sureWords(diagnosis).map((sentence) => (
+          {[...sureWords(diagnosis), goodPartWords(diagnosis) ?? []].flat().map((sentence) => (
             <span key={sentence} class="story-line">
               {sentence}
             </span>

@@ -2,7 +2,7 @@
 import { describe, expect, it } from 'vitest';
 import type { Report } from '../../jobs/contract';
 import { formatEstimate, oddsAgainstNone, percent, readDiagnosis, readingWords } from './diagnosis';
-import { extensionWords, sureWords, whyWords } from './diagnosis_words';
+import { extensionWords, goodPartWords, sureWords, whyWords } from './diagnosis_words';
 
 const report: Report = {
   verdict: ['heating_gradient'],
@@ -90,6 +90,15 @@ describe('a diagnosis', () => {
     expect(diagnosis.failed).toEqual([
       { label: 'Vacuum too weak', causes: ['weak_vacuum'], why: 'It would fit, but.' },
     ]);
+  });
+
+  it('asks for a good part where the answer is in doubt and there is none', () => {
+    expect(goodPartWords(readDiagnosis(report))).toMatch(/^If you have a part over the same mould/);
+    expect(goodPartWords(readDiagnosis({ ...report, doubts: [] }))).toBeNull();
+    expect(goodPartWords(readDiagnosis({ ...report, doubts: [], reading: 'unknown' }))).not.toBeNull();
+    const beside = readDiagnosis({ ...report, good_parts: ['June'] });
+    expect(beside.goodParts).toEqual(['June']);
+    expect(goodPartWords(beside)).toBeNull();
   });
 
   it('says what happened, how sure, and what speaks against it', () => {

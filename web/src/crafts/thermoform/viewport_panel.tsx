@@ -13,6 +13,7 @@ import { keepDrawn, thicknessOf } from './draw_scene';
 import { watchExtras } from './extras';
 import { MoveHandle } from './move_handle';
 import { ModelMover } from './move_model';
+import { besideModel } from './stand/clear_of_model';
 import { FaceList } from './stand/face_list';
 import { FaceOverlay } from './stand/face_overlay';
 import type { FaceTool } from './stand/face_tool';
@@ -223,7 +224,10 @@ function placeHandle(
   const box = there ? turner.box.peek() : null;
   const at = box && viewport.project([(box.low[0] + box.high[0]) / 2, box.low[1] - 14, 2]);
   element.hidden = !at || turner.holding;
-  if (at) element.style.translate = `${at.xPx.toFixed(1)}px ${at.yPx.toFixed(1)}px`;
+  if (box && at) {
+    const { xPx, yPx } = besideModel(viewport, box, at);
+    element.style.translate = `${xPx.toFixed(1)}px ${yPx.toFixed(1)}px`;
+  }
 }
 
 /** What floats stays off the object: at the foot, and the list of faces at the right or, on a phone, at the foot. */

@@ -5,6 +5,7 @@ import { formatOnStep, hideTip, Icon, tipHandlers, withUnit } from '../../../ui'
 import '../../../shared/panels/move_handle.css';
 import type { Curve, Viewport } from '../../../view';
 import type { ThermoformSession } from '../thermoform_session';
+import { besideModel } from './clear_of_model';
 import type { Handle } from './ring';
 import { circle, handles, pointOn, ticks } from './ring';
 import type { ModelTurner } from './turn_model';
@@ -112,6 +113,10 @@ export function placeTurnHandles(
     const by_deg = held?.handle === handle ? held.by_deg : 0;
     const at = ring && viewport.project(pointOn(ring, ring.rest_deg + by_deg));
     element.hidden = !at || (held !== null && held.handle !== handle);
-    if (at) element.style.translate = `${at.xPx.toFixed(1)}px ${at.yPx.toFixed(1)}px`;
+    const box = turner.box.peek();
+    if (at && box) {
+      const { xPx, yPx } = besideModel(viewport, box, at);
+      element.style.translate = `${xPx.toFixed(1)}px ${yPx.toFixed(1)}px`;
+    }
   }
 }

@@ -2,6 +2,7 @@
 #include "evidence/models/thermoform/good_part.h"
 
 #include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include <algorithm>
 #include <random>
@@ -15,6 +16,7 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
 
 using namespace virtual_lab;
 
@@ -84,6 +86,24 @@ TEST_CASE("GoodPart.another_simulation_misses_something_else_of_it") {
     return median_length(m.predict(0, other, context) - m.predict(0, m.nominal(), context));
   };
   CHECK(moves(model) < 0.5 * moves(alone));
+}
+
+TEST_CASE("GoodPart.thickness_that_it_misses_is_not_missed_again_but_a_rim_is_its_own") {
+  FormedObject good = measured("June", 1, {}), today = measured("today", 2, {});
+  const auto o = read_parameters<ThermoformOptions>(today.setup.parameters);
+  const Vec2 rim(0.5 * o.clamp_opening_x_mm + 5, 0);
+  good.thickness = {{Vec2(0, 0), 0.5, 0.01}, {Vec2(30, 0), 0.4, 0.01}, {rim, 1.2, 0.01}};
+  today.thickness = {{Vec2(0, 0), 0.5, 0.01}, {Vec2(30, 0), 0.4, 0.01}, {rim, 1.0, 0.01}};
+  const ThermoformModel model({today}, beside({good}));
+  REQUIRE(model.measurements().size() == 3);
+  Context context;
+  const auto read = [&](int measurement) {
+    const Measurement& m = model.measurements()[static_cast<std::size_t>(measurement)];
+    return Eigen::VectorXd(model.predict(measurement, model.nominal(), context) / m.scale);
+  };
+  CHECK_THAT(read(1)[0], WithinAbs(0.5, 0.02));
+  CHECK_THAT(read(1)[1], WithinAbs(0.4, 0.02));
+  CHECK_THAT(read(2)[0], WithinAbs(o.sheet_thickness_mm, 1e-9));
 }
 
 TEST_CASE("GoodPart.it_must_be_of_the_same_mould") {

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "numerics/local_kriging.h"
 #include "evidence/models/thermoform/cause_words.h"
 #include "evidence/models/thermoform/rim_thickness.h"
 
@@ -86,6 +85,11 @@ ThermoformModel::ThermoformModel(std::vector<FormedObject> objects, ThermoformMo
   cheaper_ = std::make_unique<ThermoformModel>(objects_, std::move(coarse));
 }
 
+double ThermoformModel::thickness_scale(const FormedObject& object, double misfit_share) const {
+  return known_misfit() /
+         (misfit_share * read_parameters<ThermoformOptions>(object.setup.parameters).sheet_thickness_mm);
+}
+
 void ThermoformModel::add_places(const FormedObject& object) {
   const auto own = read_parameters<ThermoformOptions>(object.setup.parameters);
   Measurement m;
@@ -110,7 +114,7 @@ void ThermoformModel::add_thickness(int object, std::vector<MeasuredThickness> r
   Measurement m;
   m.name = own_object.name + what;
   m.places_index = object;
-  m.scale = known_misfit() / (misfit_share * own.sheet_thickness_mm);
+  m.scale = thickness_scale(own_object, misfit_share);
   m.place = in_opening(readings, own);
   m.extent_mm = std::max(own.clamp_opening_x_mm, own.clamp_opening_y_mm);
   m.measured.resize(m.place.rows(), 1);
@@ -289,54 +293,35 @@ Eigen::MatrixXd ThermoformModel::predict(int measurement, const Eigen::VectorXd&
   const FormedObject& own = objects_[static_cast<std::size_t>(object)];
   const auto sheet = formed(object, u, context);
   const ThermoformOptions o = simulation_options(object, u);
-  if (!measured.is_place())
-    return measured.scale *
-           predict_thickness(
-               *sheet, in_clamp(thickness_readings(static_cast<std::size_t>(measurement)), own.setup.sheet_turned), o,
-               measurement_effects(u));
+  if (!measured.is_place()) {
+    Eigen::MatrixXd thickness =
+        measured.scale * predict_thickness(*sheet, places_in_clamp(measurement), o, measurement_effects(u));
+    if (in_order_) thickness += beside_simulation(measurement, u, context);
+    return thickness;
+  }
   const double plate_z = own.setup.base_plate_end_z_mm;
   FormedSheet raised = *sheet;
   raised.mesh.V.col(2).array() += plate_z;
   Eigen::MatrixXd places =
-      predict_measured(raised, in_clamp(own.points, own.setup.sheet_turned), own.setup.measured_surface,
-                       o.clamp_height_mm + plate_z, o.sheet_thickness_mm, measurement_effects(u), plate_z);
-  if (in_order_) places += beside_simulation(object, u, context);
+      predict_measured(raised, places_in_clamp(measurement), own.setup.measured_surface, o.clamp_height_mm + plate_z,
+                       o.sheet_thickness_mm, measurement_effects(u), plate_z);
+  if (in_order_) places += beside_simulation(measurement, u, context);
   return places;
 }
 
-const Eigen::MatrixXd& ThermoformModel::beside_simulation(int object, const Eigen::VectorXd& u,
-                                                          const Context& context) const {
-  // An equally good simulation misses something else of a good part. Only what it makes of the change is uncertain.
-  Eigen::VectorXd in_order = nominal();
-  std::vector<int> discrepancies;
-  for (const int p : parameters_with(ParameterRole::discrepancy))
-    if (u[p] >= 0.5) {
-      in_order[p] = 1;
-      discrepancies.push_back(p);
-    }
-  const std::scoped_lock lock(beside_mutex_);
-  const auto [known, is_new] = beside_.try_emplace({object, discrepancies});
-  Eigen::MatrixXd& beside = known->second;
-  if (!is_new) return beside;
-  const FormedObject& own = objects_[static_cast<std::size_t>(object)];
-  const std::vector<FormedObject>& parts = in_order_->objects();
-  beside = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(own.points.size()), 3);
-  int count = 0;
-  try {
-    for (std::size_t part = 0; part < parts.size(); ++part) {
-      if (parts[part].key != own.key) continue;
-      const Eigen::MatrixXd left =
-          in_order_->measurements()[part].measured - in_order_->predict(static_cast<int>(part), in_order, context);
-      beside += LocalKriging(in_clamp(parts[part].points, parts[part].setup.sheet_turned), left)
-                    .read(in_clamp(own.points, own.setup.sheet_turned));
-      ++count;
-    }
-  } catch (...) {
-    beside_.erase(known);
-    throw;
-  }
-  // What differs among several is no fault of the simulation.
-  return beside /= std::max(1, count);
+TextureCoordinates ThermoformModel::places_in_clamp(int measurement) const {
+  const Measurement& measured = measurements_[static_cast<std::size_t>(measurement)];
+  const FormedObject& own =
+      objects_[static_cast<std::size_t>(measured.is_place() ? measurement : measured.places_index)];
+  return measured.is_place()
+             ? in_clamp(own.points, own.setup.sheet_turned)
+             : in_clamp(thickness_readings(static_cast<std::size_t>(measurement)), own.setup.sheet_turned);
+}
+
+bool ThermoformModel::is_of_the_rim(int measurement) const {
+  const Measurement& measured = measurements_[static_cast<std::size_t>(measurement)];
+  return !measured.is_place() &&
+         measured.scale == thickness_scale(objects_[static_cast<std::size_t>(measured.places_index)], known_rim_misfit);
 }
 
 std::string ThermoformModel::in_words(int cause, const std::vector<double>& values) const {

@@ -86,9 +86,15 @@ class ThermoformModel : public ForwardModel {
 
  private:
   void add_places(const FormedObject& object);
-  /// What good parts over the same mould have beside the simulation with the discrepancies of u, at an object's marks;
-  /// n x 3, all 0 where there is no such part.
-  const Eigen::MatrixXd& beside_simulation(int object, const Eigen::VectorXd& u, const Context& context) const;
+  /// What good parts over the same mould have beside the simulation with the discrepancies of u, where a measurement's
+  /// readings are; n x d, all 0 where there is no such part, and of the rim.
+  const Eigen::MatrixXd& beside_simulation(int measurement, const Eigen::VectorXd& u, const Context& context) const;
+  /// Of an object's measurements the one of the same quantity, or -1.
+  int measurement_like(const Measurement& other, int object) const;
+  TextureCoordinates places_in_clamp(int measurement) const;
+  bool is_of_the_rim(int measurement) const;
+  /// Measurement::scale of thickness that is known to be off by a share of the sheet's.
+  double thickness_scale(const FormedObject& object, double misfit_share) const;
   void add_thickness(int object, std::vector<MeasuredThickness> readings, const char* what, double misfit_share);
   SheetSimulation simulation_of(int object, const Eigen::VectorXd& u) const;
   /// Parameters by name, as the object's set-up, the profile and the extensions have them.
@@ -108,7 +114,7 @@ class ThermoformModel : public ForwardModel {
   mutable std::map<std::string, std::shared_ptr<const FormedSheet>> sheets_;
   std::unique_ptr<const ThermoformModel> in_order_;  // of the good parts
   mutable std::mutex beside_mutex_;
-  mutable std::map<std::pair<int, std::vector<int>>, Eigen::MatrixXd> beside_;  // per object and discrepancies
+  mutable std::map<std::pair<int, std::vector<int>>, Eigen::MatrixXd> beside_;  // per measurement and discrepancies
 };
 
 /// The parameters that a diagnosis varies, base first, and the causes they belong to.

@@ -110,7 +110,17 @@ TEST_CASE("GoodPart.it_must_be_of_the_same_mould") {
   const FormedObject object = measured("today", 2, {});
   FormedObject other = measured("June", 1, {});
   CHECK_NOTHROW(check_good_parts({other}, {object}));
-  other.key = "another";
+  // Written by another program, with other triangles: the same mould.
+  other.key = "another file";
+  TriangleMesh mesh = object.mould->mesh;
+  mesh.F = mesh.F.colwise().reverse().eval();
+  other.mould = std::make_shared<const MouldShape>(mesh);
+  CHECK(same_mould(other, object));
+  CHECK_NOTHROW(check_good_parts({other}, {object}));
+  // A millimetre beside: marks come to lie elsewhere on it.
+  mesh.V.col(0).array() += 1;
+  other.mould = std::make_shared<const MouldShape>(mesh);
+  CHECK_FALSE(same_mould(other, object));
   try {
     check_good_parts({other}, {object});
     FAIL_CHECK("not refused");

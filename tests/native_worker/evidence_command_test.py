@@ -127,6 +127,10 @@ class Evidence(unittest.TestCase):
     def test_a_good_part_shows_what_has_changed(self):
         out = self.folder / "beside"
         words = ("--triangles", 500, "--pairs", "off", "--separate", "off", "--out", out)
+        # The same mould, as another program writes it.
+        mould = self.object / "mould.obj"
+        mould.write_text("# by another program\n" + MOULD)
+        self.addCleanup(mould.write_text, MOULD)
         self.run_program("evidence-diagnose", "--object", self.shifted, "--good", self.object, *words)
         diagnosis = json.loads((out / "diagnosis.json").read_text())
         self.assertEqual(diagnosis["verdict"], ["scan_shift"])
@@ -137,7 +141,7 @@ class Evidence(unittest.TestCase):
         self.assertIn("What the simulation misses of the good part lamp", (out / "diagnosis.html").read_text())
         self.expect_refused("has the same measured.csv as", "evidence-diagnose", "--object", self.object, "--good", self.object, *words)
         elsewhere = self.write(self.folder / "elsewhere", self.points[1:])
-        (elsewhere / "mould.obj").write_text(MOULD.replace("25\nf", "26\nf"))
+        (elsewhere / "mould.obj").write_text(MOULD.replace(" 25\n", " 26\n"))
         self.expect_refused("elsewhere: this good part was formed over another mould", "evidence-diagnose", "--object", self.shifted, "--good", elsewhere, *words)
 
     def test_a_diagnosis_names_the_shift(self):

@@ -8,6 +8,23 @@
 #include "numerics/local_kriging.h"
 
 namespace formwright {
+namespace {
+
+constexpr double same_place_mm = 0.2;
+constexpr Eigen::Index max_compared = 500;
+
+bool lies_on(const TriangleMesh& mesh, const MouldShape& other) {
+  const Eigen::Index n = mesh.V.rows(), stride = std::max<Eigen::Index>(1, n / max_compared);
+  for (Eigen::Index i = 0; i < n; i += stride)
+    if (!other.distance.nearest(mesh.V.row(i).transpose(), same_place_mm)) return false;
+  return true;
+}
+
+}  // namespace
+
+bool same_mould(const FormedObject& a, const FormedObject& b) {
+  return a.key == b.key || (lies_on(a.mould->mesh, *b.mould) && lies_on(b.mould->mesh, *a.mould));
+}
 
 MachineInOrder machine_in_order(const std::vector<FormedObject>& good_parts, const ThermoformModelOptions& options,
                                 Context& context) {
@@ -28,11 +45,11 @@ MachineInOrder machine_in_order(const std::vector<FormedObject>& good_parts, con
 
 void check_good_parts(const std::vector<FormedObject>& good_parts, const std::vector<FormedObject>& objects) {
   for (const FormedObject& part : good_parts)
-    if (std::none_of(objects.begin(), objects.end(), [&](const FormedObject& o) { return o.key == part.key; }))
+    if (std::none_of(objects.begin(), objects.end(), [&](const FormedObject& o) { return same_mould(o, part); }))
       throw Error(
           ErrorCode::invalid_input, "good",
           part.name +
-              ": this good part was formed over another mould than the measured objects: give one with the same mould.obj, or leave it out.");
+              ": this good part was formed over another mould than the measured objects, or it stood elsewhere: give one over the same mould in the same place, or leave it out.");
 }
 
 int ThermoformModel::measurement_like(const Measurement& other, int object) const {
@@ -68,7 +85,7 @@ const Eigen::MatrixXd& ThermoformModel::beside_simulation(int measurement, const
   int count = 0;
   try {
     for (int part = 0; part < static_cast<int>(in_order_->objects().size()); ++part) {
-      if (in_order_->objects()[static_cast<std::size_t>(part)].key != own.key) continue;
+      if (!same_mould(in_order_->objects()[static_cast<std::size_t>(part)], own)) continue;
       const int like = in_order_->measurement_like(measured, part);
       if (like < 0) continue;
       const Eigen::MatrixXd left = in_order_->measurements()[static_cast<std::size_t>(like)].measured -

@@ -19,6 +19,10 @@ struct MachineInOrder {
 MachineInOrder machine_in_order(const std::vector<FormedObject>& good_parts, const ThermoformModelOptions& options,
                                 Context& context);
 
+/// The same shape in the same place, however its triangles are written: no vertex (of some 500 of each) is farther than
+/// 0.2 mm from the other.
+bool same_mould(const FormedObject& a, const FormedObject& b);
+
 /// Throws Error{invalid_input, "good"} where a part was formed over a mould that is none of the objects'.
 void check_good_parts(const std::vector<FormedObject>& good_parts, const std::vector<FormedObject>& objects);
 

@@ -139,11 +139,11 @@ TEST_CASE("GoodPart.what_has_changed_since_is_found") {
   HiddenEffect effect{"print_scale", {{"print_scale", 0.01}}};
   const FormedObject good = measured("June", 1, {}), today = measured("today", 2, {effect});
   ThermoformModelOptions options;
-  options.triangles = triangles;
+  options.triangles = triangles / 2;
   Context context;
   const MachineInOrder in_order = machine_in_order({good}, options, context);
   CHECK(in_order.profile.from == std::vector<std::string>{"June"});
-  CHECK(in_order.error_mm < 0.4);
+  CHECK(in_order.error_mm < 0.6);  // 600 triangles, and outliers
   options.profile = in_order.profile;
   options.good_parts = std::make_shared<const std::vector<FormedObject>>(std::vector{good});
   const ThermoformModel model({today}, options);

@@ -10,9 +10,10 @@ namespace formwright {
 /// it is zero, where much is known near by it is their smooth course, and at a known place nearly what was known there.
 class LocalKriging {
  public:
-  /// `place` (n x 2, any unit) and `value` (n x d). Length and share of noise are those of a grid that predict each
-  /// value best from its neighbours (smallest mean distance of about 2,000 of them), zero everywhere among them.
-  /// What is farther from its neighbours' prediction than six times the median is left out as an outlier.
+  /// `place` (n x 2, any unit) and `value` (n x d), all finite; n may be 0. Length and share of noise are those of a
+  /// grid that predict each value best from its neighbours (smallest mean distance of about 2,000 of them), zero
+  /// everywhere among them. What is farther from its neighbours' prediction than six times the median is left out as an
+  /// outlier.
   LocalKriging(const Eigen::MatrixX2d& place, const Eigen::MatrixXd& value);
 
   /// k x d, at `at` (k x 2).
@@ -35,7 +36,7 @@ class LocalKriging {
 
   Eigen::MatrixX2d place_;  // ascending by x
   Eigen::MatrixXd value_;
-  Model model_{1, 0.5};
+  Model model_{1e-3, 0};  // of one place: nothing but that
   bool smooth_ = false;
   int outliers_ = 0;
 };

@@ -50,8 +50,11 @@ def run(command):
 
 
 def form(a, mould, cause, level, seed, out, *more):
-    if (out / "truth.json").exists():  # kept by --folder
-        return
+    truth = out / "truth.json"
+    if truth.exists():  # kept by --folder
+        kept = json.loads(truth.read_text())
+        if (kept["seed"], kept["mould"], kept["level"], kept["noise_mm"], kept["points"]) == (seed, mould, level, a.noise, a.points):
+            return
     run([a.laboratory, "--mould", mould, "--cause", cause, "--level", str(level), "--noise", str(a.noise), "--points", str(a.points), "--seed", str(seed), "--out", str(out),
          *more])
 
@@ -111,7 +114,7 @@ def main():
     parser.add_argument("--noise", type=float, default=0.1)
     parser.add_argument("--points", type=int, default=2000)
     parser.add_argument("--triangles", type=int, default=5000, help="of the simulated sheet")
-    parser.add_argument("--folder", type=pathlib.Path, help="keeps the objects and reports here")
+    parser.add_argument("--folder", type=pathlib.Path, help="keeps the objects and reports here; objects of the same seed, noise and points are not formed again")
     parser.add_argument("--jobs", type=int, default=1, help="cases at a time")
     parser.add_argument("--pairs", action="store_true", help="also looks for two causes at once, which takes twice as long")
     parser.add_argument("--known-machine", action="store_true", help="diagnoses with a profile from when the machine was in order")

@@ -185,10 +185,11 @@ OperationResult run_evidence_diagnose(const OperationCall& call, const DiagnoseO
                            " triangles did not decide it: looked at again on twice as many.");
   if (in_order) {
     for (const FormedObject& part : *options.good_parts) report.good_parts.push_back(part.name);
-    for (const std::string& name : report.good_parts)
-      report.notes.push_back("What the simulation misses of the good part " + name + ", " +
-                             with_digits(in_order->error_mm, 2) +
-                             " mm on average with noise, was added to what it predicts.");
+    std::string names;
+    for (const std::string& name : report.good_parts) names += (names.empty() ? "" : ", ") + name;
+    report.notes.push_back("What the simulation misses of the good part " + names + ", " +
+                           with_digits(in_order->error_mm, 2) +
+                           " mm on average with noise, was added to what it predicts.");
   }
   for (const FormedObject& object : model.objects())
     for (const std::string& note : object.setup.notes) report.notes.push_back(object.name + ": " + note);
@@ -228,7 +229,7 @@ Operation evidence_diagnose_operation() {
           false, true),
       object_input_info(
           "good", "Good part",
-          "Another folder of the same kind, over the same mould, from when the machine was in order. What has changed since is then found, whatever else the simulation gets wrong.",
+          "Another folder of the same kind, over the same mould, from when the machine was in order. What the simulation misses of it is not blamed on anything: what has changed since is looked for.",
           false, true),
       profile_input_info()};
   operation.outputs = evidence_diagnose_outputs();

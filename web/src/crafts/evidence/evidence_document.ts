@@ -97,9 +97,8 @@ const numbered = (name: string, objects: readonly MeasuredObject[]): [string, Jo
 /** What a run is about; null while no object is fitted. */
 export function subjectOf({ mode, objects }: Pick<EvidenceDocument, 'mode' | 'objects'>): Subject | null {
   const fit = used(objects, 'fit');
-  const [unseen, good] = (['unseen', 'good'] as const).map((use) =>
-    mode === 'diagnose' ? used(objects, use) : [],
-  ) as [MeasuredObject[], MeasuredObject[]];
+  const beside = (use: Use) => (mode === 'diagnose' ? used(objects, use) : []);
+  const [unseen, good] = [beside('unseen'), beside('good')];
   if (fit.length === 0) return null;
   const hashes = (list: readonly MeasuredObject[]) => list.map(({ pack }) => pack.blob).join('+');
   return {

@@ -56,7 +56,7 @@ export function Story({ session, diagnosis }: { session: EvidenceSession; diagno
           ) : null}
         </Step>
         <Step title="How sure">
-          {[...sureWords(diagnosis), goodPartWords(diagnosis) ?? []].flat().map((sentence) => (
+          {[...sureWords(diagnosis), ...goodPartWords(diagnosis)].map((sentence) => (
             <span key={sentence} class="story-line">
               {sentence}
             </span>

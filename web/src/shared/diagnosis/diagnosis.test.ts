@@ -93,12 +93,12 @@ describe('a diagnosis', () => {
   });
 
   it('asks for a good part where the answer is in doubt and there is none', () => {
-    expect(goodPartWords(readDiagnosis(report))).toMatch(/^If you have a part over the same mould/);
-    expect(goodPartWords(readDiagnosis({ ...report, doubts: [] }))).toBeNull();
-    expect(goodPartWords(readDiagnosis({ ...report, doubts: [], reading: 'unknown' }))).not.toBeNull();
+    expect(goodPartWords(readDiagnosis(report))).toEqual([expect.stringMatching(/^If you have a part over/)]);
+    expect(goodPartWords(readDiagnosis({ ...report, doubts: [] }))).toEqual([]);
+    expect(goodPartWords(readDiagnosis({ ...report, doubts: [], reading: 'unknown' }))).toHaveLength(1);
     const beside = readDiagnosis({ ...report, good_parts: ['June'] });
     expect(beside.goodParts).toEqual(['June']);
-    expect(goodPartWords(beside)).toBeNull();
+    expect(goodPartWords(beside)).toEqual([]);
   });
 
   it('says what happened, how sure, and what speaks against it', () => {

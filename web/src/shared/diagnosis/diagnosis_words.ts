@@ -49,8 +49,10 @@ export function sureWords({ answers, gains, otherQuantities, doubts, reading }: 
   ];
 }
 
-/** What would tell more, where the answer is none or in doubt and no good part was given; else null. */
-export const goodPartWords = ({ goodParts, reading, doubts }: Diagnosis): string | null =>
+/** What would tell more, where the answer is unknown or in doubt and no good part was given; else nothing. */
+export const goodPartWords = ({ goodParts, reading, doubts }: Diagnosis): string[] =>
   goodParts.length === 0 && (reading === 'unknown' || doubts.length > 0)
-    ? 'If you have a part over the same mould from when all was in order, measure it, too, and mark it as “Good part”: it shows what has changed.'
-    : null;
+    ? [
+        'If you have a part over the same mould from when all was in order, measure it, too, and mark it as “Good part”: it shows what has changed.',
+      ]
+    : [];

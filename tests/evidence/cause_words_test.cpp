@@ -41,6 +41,15 @@ TEST_CASE("CauseWords.SayWhereAndHowMuch") {
   CHECK(words("print_stretch_x", {0.02}) == "The pattern was printed about 2 % too long from side to side.");
   CHECK(words("print_stretch_y", {-0.015}) == "The pattern was printed about 1.5 % too short from front to back.");
   CHECK(words("scan_scale", {0.01}) == "The scan is about 1 % larger than the object.");
+  CHECK(words("scan_stretch_x", {0.02}) == "The scan is about 2 % too long from side to side.");
+  CHECK(words("scan_stretch_y", {-0.015}) == "The scan is about 1.5 % too short from front to back.");
+  CHECK(words("scan_stretch_z", {0.01}) == "The scan is about 1 % too high.");
+  // About x the back goes up, about y the left.
+  CHECK(words("scan_rotation", {0.7, 0, 0.05}) == "The scan leans by 0.7°, too high at the back.");
+  CHECK(words("scan_rotation", {0, 0.7, 0}) == "The scan leans by 0.7°, too high on the left.");
+  CHECK(words("scan_rotation", {0, -0.1, -1}) == "The scan is turned by 1°, clockwise seen from above.");
+  CHECK(words("scan_rotation", {0.3, -0.4, 1}) ==
+        "The scan leans by 0.5°, too high at the back right, and is turned by 1°, counter-clockwise seen from above.");
   CHECK(words("scan_shift", {1.5, -0.4, 0.8}) ==
         "The scan lies about 1.5 mm to the right, 0.4 mm to the front and 0.8 mm up from where the object was.");
   CHECK(words("sorcery", {1}).empty());

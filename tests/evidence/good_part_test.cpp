@@ -20,7 +20,7 @@ using Catch::Matchers::WithinAbs;
 
 using namespace virtual_lab;
 
-constexpr int triangles = 1200;
+constexpr int few_triangles = 1200;
 
 /// Plastic and simulation that the diagnosis's own is wrong about.
 HiddenWorld other_plastic() {
@@ -42,7 +42,7 @@ FormedObject measured(const std::string& name, unsigned seed, const std::vector<
 
 ThermoformModelOptions beside(const std::vector<FormedObject>& parts) {
   ThermoformModelOptions options;
-  options.triangles = triangles;
+  options.triangles = few_triangles;
   options.good_parts = std::make_shared<const std::vector<FormedObject>>(parts);
   return options;
 }
@@ -63,7 +63,7 @@ double error_of(const ThermoformModel& model) {
 TEST_CASE("GoodPart.what_the_simulation_misses_of_it_is_not_missed_again") {
   const FormedObject good = measured("June", 1, {}), today = measured("today", 2, {});
   ThermoformModelOptions alone;
-  alone.triangles = triangles;
+  alone.triangles = few_triangles;
   const double before = error_of(ThermoformModel({today}, alone));
   const double after = error_of(ThermoformModel({today}, beside({good})));
   CAPTURE(before, after);
@@ -131,7 +131,7 @@ TEST_CASE("GoodPart.it_must_be_of_the_same_mould") {
   }
   // Of another mould it changes nothing.
   ThermoformModelOptions alone;
-  alone.triangles = triangles;
+  alone.triangles = few_triangles;
   CHECK(error_of(ThermoformModel({object}, beside({other}))) == error_of(ThermoformModel({object}, alone)));
 }
 
@@ -139,7 +139,7 @@ TEST_CASE("GoodPart.what_has_changed_since_is_found") {
   HiddenEffect effect{"print_scale", {{"print_scale", 0.01}}};
   const FormedObject good = measured("June", 1, {}), today = measured("today", 2, {effect});
   ThermoformModelOptions options;
-  options.triangles = triangles / 2;
+  options.triangles = few_triangles / 2;
   Context context;
   const MachineInOrder in_order = machine_in_order({good}, options, context);
   CHECK(in_order.profile.from == std::vector<std::string>{"June"});

@@ -89,7 +89,11 @@ HiddenEffect draw_effect(const std::string& cause, double level, std::mt19937& r
   else if (cause == "mould_scale") effect.values["mould_scale"] = sign * 0.03 * size;
   else if (cause == "print_scale") effect.values["print_scale"] = sign * 0.015 * size;
   else if (cause == "print_stretch_x" || cause == "print_stretch_y") effect.values[cause] = sign * 0.02 * size;
-  else if (cause == "lasting_network") effect.values["network_share"] = 0.2 * size;
+  else if (cause.starts_with("scan_stretch_")) effect.values[cause] = sign * 0.02 * size;
+  else if (cause == "scan_rotation") {
+    directed("scan_turn_x_deg", "scan_turn_y_deg", 0.8);
+    effect.values["scan_turn_z_deg"] = sign * 0.4 * size;
+  } else if (cause == "lasting_network") effect.values["network_share"] = 0.2 * size;
   else if (cause == "scan_scale") effect.values["scan_scale"] = sign * 0.01 * size;
   return effect;
 }

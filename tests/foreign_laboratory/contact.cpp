@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "foreign_laboratory/contact.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,23 +11,34 @@ namespace formwright::foreign_laboratory {
 
 using Eigen::Vector3d;
 
+namespace {
+
+/// About the vertical, then leaning about a horizontal axis through the middle of its base.
+Eigen::Matrix3d turn_of(const Faults& faults) {
+  constexpr double per_degree = std::numbers::pi / 180;
+  const Vector3d lean(-faults.mould_lean_back_deg, faults.mould_lean_right_deg, 0);  // the axis, as long as the angle
+  const Eigen::Matrix3d about_vertical =
+      Eigen::AngleAxisd(per_degree * faults.mould_rotation_deg, Vector3d::UnitZ()).toRotationMatrix();
+  if (lean.norm() == 0) return about_vertical;
+  return Eigen::AngleAxisd(per_degree * lean.norm(), lean.normalized()).toRotationMatrix() * about_vertical;
+}
+
+}  // namespace
+
 MouldOnPlate::MouldOnPlate(Mould mould, const Faults& faults)
     : mould_(mould),
       friction_(faults.slip > 0 ? 1 / faults.slip : std::numeric_limits<double>::infinity()),
-      cosine_(std::cos(faults.mould_rotation_deg * std::numbers::pi / 180)),
-      sine_(std::sin(faults.mould_rotation_deg * std::numbers::pi / 180)),
+      turn_(turn_of(faults)),
       scale_(1 + faults.mould_scale),
       shift_(faults.mould_shift_x_mm, faults.mould_shift_y_mm, 0) {}
 
 Distance MouldOnPlate::distance_from(const Vector3d& place, double plate_z_mm) const {
   const Vector3d from = place - shift_ - Vector3d(0, 0, plate_z_mm);
   const Distance plate{from.z(), Vector3d::UnitZ()};
-  const Vector3d in_mould(cosine_ * from.x() + sine_ * from.y(), cosine_ * from.y() - sine_ * from.x(), from.z());
-  Distance mould = foreign_laboratory::distance_to(mould_, in_mould / scale_);
+  Distance mould = foreign_laboratory::distance_to(mould_, turn_.transpose() * from / scale_);
   mould.mm *= scale_;
   if (plate.mm < mould.mm) return plate;
-  const Vector3d n = mould.outward;
-  mould.outward = {cosine_ * n.x() - sine_ * n.y(), sine_ * n.x() + cosine_ * n.y(), n.z()};
+  mould.outward = turn_ * mould.outward;
   return mould;
 }
 

@@ -30,7 +30,8 @@ class MouldOnPlate {
  private:
   Mould mould_;
   double friction_;  // infinite: sticks
-  double cosine_, sine_, scale_;
+  Eigen::Matrix3d turn_;
+  double scale_;
   Eigen::Vector3d shift_;
 };
 

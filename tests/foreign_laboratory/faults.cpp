@@ -26,12 +26,19 @@ constexpr Named named[] = {{"colder_right_k", &Faults::colder_right_k},
                            {"mould_shift_x_mm", &Faults::mould_shift_x_mm},
                            {"mould_shift_y_mm", &Faults::mould_shift_y_mm},
                            {"mould_rotation_deg", &Faults::mould_rotation_deg},
+                           {"mould_lean_right_deg", &Faults::mould_lean_right_deg},
+                           {"mould_lean_back_deg", &Faults::mould_lean_back_deg},
                            {"mould_scale", &Faults::mould_scale},
                            {"print_scale", &Faults::print_scale},
                            {"print_stretch_x", &Faults::print_stretch_x},
                            {"print_stretch_y", &Faults::print_stretch_y},
+                           {"print_skew", &Faults::print_skew},
                            {"scan_scale", &Faults::scan_scale},
-                           {"scan_stretch", &Faults::scan_stretch},
+                           {"scan_stretch_x", &Faults::scan_stretch_x},
+                           {"scan_turn_x_deg", &Faults::scan_turn_x_deg},
+                           {"scan_turn_y_deg", &Faults::scan_turn_y_deg},
+                           {"scan_turn_z_deg", &Faults::scan_turn_z_deg},
+                           {"scan_bow_mm", &Faults::scan_bow_mm},
                            {"scan_shift_x_mm", &Faults::scan_shift_x_mm},
                            {"scan_shift_y_mm", &Faults::scan_shift_y_mm},
                            {"scan_shift_z_mm", &Faults::scan_shift_z_mm}};
@@ -69,7 +76,12 @@ Faults draw_faults(std::string_view cause, double level, std::mt19937_64& random
   else if (cause == "print_scale") f.print_scale = 0.009 * sign * size;
   else if (cause == "print_stretch_x") f.print_stretch_x = 0.013 * sign * size;
   else if (cause == "print_stretch_y") f.print_stretch_y = 0.013 * sign * size;
-  else if (cause == "scan_stretch") f.scan_stretch = 0.015 * sign * size;
+  else if (cause == "print_skew") f.print_skew = 0.013 * sign * size;
+  else if (cause == "scan_stretch_x") f.scan_stretch_x = 0.015 * sign * size;
+  else if (cause == "scan_rotation")
+    f.scan_turn_x_deg = 0.7 * along_x, f.scan_turn_y_deg = 0.7 * along_y, f.scan_turn_z_deg = 0.35 * sign * size;
+  else if (cause == "scan_bow") f.scan_bow_mm = 0.9 * sign * size;
+  else if (cause == "mould_leaning") f.mould_lean_right_deg = 2 * along_x, f.mould_lean_back_deg = 2 * along_y;
   else if (cause == "scan_scale") f.scan_scale = 0.01 * sign * size;
   else if (cause == "scan_shift")
     f.scan_shift_x_mm = 0.8 * along_x, f.scan_shift_y_mm = 0.8 * along_y, f.scan_shift_z_mm = 0.4 * sign * size;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "foreign_laboratory/measurement.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -49,14 +50,19 @@ SurfacePoint point_of(const FormedSheet& sheet, const Vector2d& flat_mm) {
 
 SurfacePoint marked_point(const FormedSheet& sheet, const Vector2d& mark, const Faults& faults) {
   const double scale = 1 + faults.print_scale;
-  return point_of(sheet,
-                  {scale * (1 + faults.print_stretch_x) * mark.x(), scale * (1 + faults.print_stretch_y) * mark.y()});
+  const double x = (1 + faults.print_stretch_x) * mark.x() + faults.print_skew * mark.y();
+  return point_of(sheet, {scale * x, scale * (1 + faults.print_stretch_y) * mark.y()});
 }
 
 Vector3d scanned(const SurfacePoint& point, const Faults& faults) {
-  const Vector3d scale = (1 + faults.scan_scale) * Vector3d(1 + faults.scan_stretch, 1, 1);
-  return scale.cwiseProduct(point.place + 0.5 * point.thickness_mm * point.outward) +
-         Vector3d(faults.scan_shift_x_mm, faults.scan_shift_y_mm, faults.scan_shift_z_mm);
+  Vector3d place = point.place + 0.5 * point.thickness_mm * point.outward;
+  place.z() -= faults.scan_bow_mm * place.head<2>().squaredNorm() / (100.0 * 100.0);
+  place = (1 + faults.scan_scale) * Vector3d(1 + faults.scan_stretch_x, 1, 1).cwiseProduct(place);
+  constexpr double per_degree = std::numbers::pi / 180;
+  const auto turn = Eigen::AngleAxisd(per_degree * faults.scan_turn_z_deg, Vector3d::UnitZ()) *
+                    Eigen::AngleAxisd(per_degree * faults.scan_turn_y_deg, Vector3d::UnitY()) *
+                    Eigen::AngleAxisd(per_degree * faults.scan_turn_x_deg, Vector3d::UnitX());
+  return turn * place + Vector3d(faults.scan_shift_x_mm, faults.scan_shift_y_mm, faults.scan_shift_z_mm);
 }
 
 std::string setup_json(const Machine& m, const Polymer& polymer) {

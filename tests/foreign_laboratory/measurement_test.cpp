@@ -34,7 +34,7 @@ TEST_CASE("Measurement.MarksAreOnTheOuterFaceWherePrintAndScanHaveThem") {
   const std::vector<Vector2d> marks = {{0, 0}, {50, -70}, {-101.5, 33}};
   Faults faults;
   faults.print_scale = 0.01, faults.print_stretch_x = -0.04, faults.print_stretch_y = 0.02;
-  faults.scan_scale = -0.03, faults.scan_stretch = 0.05;
+  faults.scan_scale = -0.03, faults.scan_stretch_x = 0.05;
   faults.scan_shift_x_mm = 1, faults.scan_shift_y_mm = -2, faults.scan_shift_z_mm = 0.5;
   const Points exact = marked_places(plane(), marks, Faults{}), faulty = marked_places(plane(), marks, faults);
   for (std::size_t k = 0; k < marks.size(); ++k) {
@@ -43,6 +43,13 @@ TEST_CASE("Measurement.MarksAreOnTheOuterFaceWherePrintAndScanHaveThem") {
     const Vector3d printed(1.05 * 1.1 * 1.01 * 0.96 * marks[k].x(), 1.01 * 1.02 * marks[k].y(), 7.4);
     CHECK((faulty.col(column) - (0.97 * printed + Vector3d(1, -2, 0.5))).norm() < 1e-12);
   }
+  Faults odd;
+  odd.print_skew = 0.1, odd.scan_bow_mm = 2;
+  const Points bent = marked_places(plane(), {{50, -70}}, odd);  // printed at 43, -70
+  CHECK((bent.col(0) - Vector3d(47.3, -70, 7.4 - 2 * (0.473 * 0.473 + 0.49))).norm() < 1e-12);
+  odd = {};
+  odd.scan_turn_z_deg = 90, odd.scan_shift_z_mm = 1;
+  CHECK((marked_places(plane(), {{50, -70}}, odd).col(0) - Vector3d(70, 55, 8.4)).norm() < 1e-12);
 }
 
 TEST_CASE("Measurement.MarksCoverTheOpeningEvenly") {
@@ -80,7 +87,7 @@ TEST_CASE("Measurement.NoiseHasTheStatedSizeAndOutliersTheStatedShare") {
 TEST_CASE("Measurement.TheSameRequestGivesTheSameBytesAndSaysWhatIsHidden") {
   Request request;
   request.mould = Mould::cone;
-  request.cause = "scan_stretch";
+  request.cause = "print_skew";
   request.seed = 5;
   request.forming = {.cells = 8, .mass_scale = 30};
   request.scan.points = 100;
@@ -88,9 +95,9 @@ TEST_CASE("Measurement.TheSameRequestGivesTheSameBytesAndSaysWhatIsHidden") {
   CHECK(files == make_object(request));
   REQUIRE(files.size() == 4);
   const auto truth = nlohmann::json::parse(files.at("truth.json"));
-  CHECK(truth.at("cause") == "scan_stretch");
+  CHECK(truth.at("cause") == "print_skew");
   CHECK(truth.at("in_the_list") == false);
-  CHECK(std::abs(truth.at("values").at("scan_stretch").get<double>()) > 0.005);
+  CHECK(std::abs(truth.at("values").at("print_skew").get<double>()) > 0.005);
   CHECK(truth.at("movement_mean_mm").get<double>() > 0.2);
   const auto setup = nlohmann::json::parse(files.at("setup.json"));
   CHECK(setup.at("vacuum_kpa") == 80);

@@ -136,6 +136,20 @@ TEST_CASE("Contact.ATurnedShiftedAndScaledMouldIsWhereItsFaultsHaveIt") {
   CHECK((found.outward - turn * expected.outward).norm() < 1e-12);
 }
 
+TEST_CASE("Contact.AMouldLeansToTheSideThatItsFaultsName") {
+  Faults faults;
+  faults.mould_lean_right_deg = 10;
+  const Vector3d top(0, 0, mould_height_mm(Mould::cone) + 5);
+  const double above = distance_to(Mould::cone, top).mm;
+  const auto right = Eigen::AngleAxisd(std::numbers::pi / 18, Vector3d::UnitY()).toRotationMatrix();
+  CHECK((right * top).x() > 0);
+  CHECK_THAT(MouldOnPlate(Mould::cone, faults).distance_from(right * top, 0).mm, WithinAbs(above, 1e-12));
+  faults.mould_lean_right_deg = 0, faults.mould_lean_back_deg = 10;
+  const auto back = Eigen::AngleAxisd(-std::numbers::pi / 18, Vector3d::UnitX()).toRotationMatrix();
+  CHECK((back * top).y() > 0);
+  CHECK_THAT(MouldOnPlate(Mould::cone, faults).distance_from(back * top, 0).mm, WithinAbs(above, 1e-12));
+}
+
 TEST_CASE("Air.ThePumpReachesItsVacuumExponentiallyAndTheSheetSqueezesWhatIsLeft") {
   Air air(1e6, 0.08, 0.15);
   double difference = 0;

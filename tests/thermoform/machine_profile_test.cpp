@@ -26,7 +26,7 @@ FormedSheet slope() {
   return sheet;
 }
 
-TEST_CASE("PredictMeasured.scales_and_shifts_are_those_of_their_declaration") {
+TEST_CASE("PredictMeasured.scales_turns_and_shifts_are_those_of_their_declaration") {
   TextureCoordinates places(3, 2);
   places << 10, -20, 0, 0, 60, 0;  // the last one lies in the clamp
   MeasurementEffects effects;
@@ -43,6 +43,27 @@ TEST_CASE("PredictMeasured.scales_and_shifts_are_those_of_their_declaration") {
   CHECK((predicted.row(0).transpose() - scanned(10.71, -18.36, 21.071)).norm() < 1e-9);
   CHECK((predicted.row(1).transpose() - scanned(0, 0, 20)).norm() < 1e-9);
   CHECK((predicted.row(2).transpose() - scanned(64.26, 0, 5)).norm() < 1e-9);
+  // Stretched before it is turned, each about the plate's middle; counter-clockwise seen from where the axis points to.
+  MeasurementEffects along;
+  along.scan_stretch_x = 0.1;
+  along.scan_stretch_y = -0.2;
+  along.scan_stretch_z = 0.5;
+  const auto places_with = [&] {
+    return Positions(predict_measured(slope(), places, MeasuredSurface::mid, 5, 1, along, 3).rowwise() -
+                     Eigen::RowVector3d(0, 0, 3));
+  };
+  const Positions stretched = places_with();
+  CHECK((stretched.row(2) - Eigen::RowVector3d(66, 0, 3)).norm() < 1e-9);
+  CHECK((stretched.row(0) - Eigen::RowVector3d(11, -16, 27)).norm() < 1e-9);
+  along.scan_turn_x_deg = 90;
+  CHECK((places_with().row(0) - Eigen::RowVector3d(11, -27, -16)).norm() < 1e-9);
+  along.scan_turn_x_deg = 0;
+  along.scan_turn_y_deg = 90;
+  CHECK((places_with().row(0) - Eigen::RowVector3d(27, -16, -11)).norm() < 1e-9);
+  along.scan_turn_y_deg = 0;
+  along.scan_turn_z_deg = 90;
+  along.scan_shift_x_mm = 2;
+  CHECK((places_with().row(0) - Eigen::RowVector3d(18, 11, 27)).norm() < 1e-9);
   // Half a thickness outwards, of a sheet in the clamp straight up.
   const Positions outer = predict_measured(slope(), places, MeasuredSurface::outer, 5, 1, {}, 3);
   CHECK_THAT((outer.row(1).transpose() - Vec3(0, 0, 20)).norm(), WithinAbs(0.5, 1e-9));

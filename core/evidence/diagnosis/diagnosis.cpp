@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "evidence/diagnosis/explanations.h"
 #include "evidence/diagnosis/fitted_strength.h"
+#include "evidence/diagnosis/likeness.h"
 
 namespace formwright {
 namespace {
@@ -71,7 +72,7 @@ class Diagnostician {
     find_answer();
     widen_by_model();
     const auto before = held_out(result_.base).errors;
-    const auto after = result_.verdict.empty() ? before : held_out(result_.extended).errors;
+    const auto after = result_.verdict.empty() ? before : checked_.errors;
     result_.held_out = compare_distances(model_, before, after);
     for (std::size_t m = 0; m < before.size(); ++m)
       if (!model_.measurements()[m].is_place())
@@ -114,7 +115,6 @@ class Diagnostician {
       }
       result_.verdict = top.causes;
       if (top.unknown_cause) doubt(stays_unexplained);
-      result_.extended = recalibrated(tried_.refit_of(result_.verdict).fit);
       return;
     }
   }
@@ -127,9 +127,12 @@ class Diagnostician {
     result_.trials.push_back({causes, large.size() == causes.size(), {}});
     if (large.size() < causes.size()) return FailedCheck{causes, large, Failure::too_small};
     if (!predicts_better(causes, without)) return FailedCheck{causes, {}, Failure::predicts_no_better};
+    result_.extended = recalibrated(tried_.refit_of(causes).fit);
+    checked_ = held_out(result_.extended);
     widen_by_jackknife(causes);
     const std::vector<int> shown = distinguishable_from_zero(causes);
     if (shown.size() == causes.size()) return {};
+    result_.extended = result_.base;
     const bool imitated = causes.size() == 1 && !std::isfinite(finding_of(causes.front()).min_visible_strength);
     return FailedCheck{causes, shown, imitated ? Failure::like_the_material : Failure::near_zero};
   }
@@ -220,7 +223,8 @@ class Diagnostician {
                                          {mean_distance_objective(model_, tried_.softness()),
                                           base,
                                           {fit.u},
-                                          sensitivities_of(base, fit.sensitivities, fit.free)},
+                                          sensitivities_of(base, fit.sensitivities, fit.free),
+                                          quick_fit},
                                          context_, fitting_stage);
     for (std::size_t a = result.free.size(); a < fit.free.size(); ++a) {
       result.free.push_back(fit.free[a]);
@@ -233,13 +237,12 @@ class Diagnostician {
   /// Intervals of causes that are checked, by what leaving out a quarter of the data changes: that knows of misfits
   /// that no prior has.
   void widen_by_jackknife(const std::vector<int>& causes) {
-    const ParameterFit& fit = tried_.refit_of(causes).fit;
-    const Eigen::MatrixXd steps = held_out(fit).steps;
     for (const int cause : causes) {
       CauseFinding& finding = *std::find_if(result_.causes.begin(), result_.causes.end(),
                                             [&](const CauseFinding& f) { return f.cause == cause; });
       const double variance =
-          beyond_noise(jackknife_deviation(model_, fit, steps, cause, finding.values), finding.noise_deviation);
+          beyond_noise(jackknife_deviation(model_, result_.extended, checked_.steps, cause, finding.values),
+                       finding.noise_deviation);
       const double half = 0.5 * (finding.high - finding.low);
       const double wider = std::sqrt(half * half + normal_quantile * normal_quantile * variance);
       finding.low = finding.strength - wider;
@@ -276,12 +279,14 @@ class Diagnostician {
     const GramByStructure gram =
         tried_.misfit().gram(residuals(model_, result_.base.predictions),
                              side_by_side(tried_.sensitivities(), tried_.usual_sensitivities()));
+    const std::vector<double> like = likenesses(model_, gram);
     double none = -std::numeric_limits<double>::infinity();
     for (const Hypothesis& h : result_.hypotheses)
       if (h.causes.empty()) none = std::max(none, h.log_evidence);
     for (int cause = 0; cause < static_cast<int>(model_.causes().size()); ++cause) {
       CauseFinding finding;
       finding.cause = cause;
+      finding.likeness = like[static_cast<std::size_t>(cause)];
       finding.min_visible_strength = formwright::min_visible_strength(
           model_, gram, tried_.nearest_size(model_.known_misfit()), tried_.columns(), cause);
       const Hypothesis* at = nullptr;
@@ -355,6 +360,7 @@ class Diagnostician {
   Context& context_;
   Explanations& tried_;
   Diagnosis result_;
+  HeldOut checked_;  // of result_.extended
 };
 
 }  // namespace

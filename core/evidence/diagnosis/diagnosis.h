@@ -29,6 +29,7 @@ struct CauseFinding {
   std::vector<double> values;              // of its parameters
   double min_visible_strength = 0;  // strength that these data would show; infinite where the calibration hides any
   double log_evidence = 0;          // over that of no cause
+  double likeness = 0;              // by itself, to what calibration leaves: likenesses()
 };
 
 struct NotSeparable {

@@ -157,6 +157,7 @@ Json diagnosis_json(const DiagnosisReport& report) {
                               {"interval", f.fitted ? interval(f.low, f.high) : Json()},
                               {"values", values},
                               {"log_evidence", f.log_evidence},
+                              {"likeness", f.likeness},
                               {"min_visible_strength", visible},
                               {"least_visible", visible},  // the name of version 0.1
                               {"in_words", f.fitted ? model.in_words(f.cause, f.values) : ""},

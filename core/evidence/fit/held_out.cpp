@@ -222,10 +222,10 @@ HeldOut hold_out(SimulationBag& bag, const ParameterFit& fit, const std::vector<
     folds.back().step -= at_rest;
     open.push_back(f);
   }
-  // Where the straight line misses, so that the other folds are served worse than before, half the way is gone, and
-  // half of that.
-  constexpr int halvings = 2;
-  for (int halved = 0; halved <= halvings && !open.empty(); ++halved) {
+  // Where the straight line misses, so that the other folds are served worse than before, a quarter of the way is gone.
+  constexpr double shorter = 0.25;
+  for (const bool last : {false, true}) {
+    if (open.empty()) break;
     std::vector<Eigen::VectorXd> points;
     for (const int f : open) {
       points.push_back(fit.u);
@@ -240,8 +240,8 @@ HeldOut hold_out(SimulationBag& bag, const ParameterFit& fit, const std::vector<
       Fold& fold = folds[static_cast<std::size_t>(f)];
       const bool worse =
           !predictions[i] || fold.objective->value(residuals(model, *predictions[i]), points[i]) > fold.value;
-      if (worse && halved < halvings) {
-        fold.step *= 0.5;
+      if (worse && !last) {
+        fold.step *= shorter;
         still_open.push_back(f);
         continue;
       }

@@ -133,6 +133,7 @@ class Prediction {
              const MeasurementEffects& effects, double base_plate_z_mm)
       : lookup_(sheet),
         effects_(effects),
+        scan_(effects.scan()),
         outer_(surface == MeasuredSurface::outer),
         origin_(0, 0, base_plate_z_mm),
         clamped_z_mm_(clamp_z_mm + (outer_ ? 0.5 * sheet_thickness_mm : 0)) {}
@@ -146,14 +147,14 @@ class Prediction {
       predicted.inside = true;
       if ((outer - middle).norm() > 1e-12) predicted.normal = (outer - middle).normalized();
     }
-    predicted.place_mm += effects_.scan_scale * (predicted.place_mm - origin_) +
-                          Vec3(effects_.scan_shift_x_mm, effects_.scan_shift_y_mm, effects_.scan_shift_z_mm);
+    predicted.place_mm = origin_ + scan_ * (predicted.place_mm - origin_);
     return predicted;
   }
 
  private:
   SheetLookup lookup_;
   MeasurementEffects effects_;
+  Eigen::Affine3d scan_;  // about the origin
   bool outer_;
   Vec3 origin_;
   double clamped_z_mm_;

@@ -2,11 +2,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The whole confusion table, a process a processor; goes on where it was stopped.
 
-run_confusion_table.py CONFUSION_TABLE RESULTS.jsonl [--repeat N] [--pairs N] [--clean N] [--nearest NEAREST.jsonl]
+run_confusion_table.py CONFUSION_TABLE RESULTS.jsonl [--repeat N] [--pairs N] [--clean N]
 Every cause at three strengths and two noise levels, each left out of the list once, pairs, clean data: what RESULTS has already is not done again, and every
 answer is appended as it comes, and those of an older engine are asked again with their seeds. What is asked of most comes first. Each case is one simulation after the
-other on one processor, two to four minutes; score_confusion_table.py counts what there is.
-With --nearest the baseline answers the cases that RESULTS has, half a minute each: the cause whose sensitivity is nearest to the residual."""
+other on one processor, two to four minutes; score_confusion_table.py counts what there is."""
 import argparse
 import collections
 import json
@@ -16,7 +15,7 @@ import subprocess
 import threading
 
 CAUSES = ("heating_gradient heating_centre slip anisotropy thickness_wedge cooling weak_vacuum clamp_slip mould_shift mould_rotation mould_scale "
-          "print_scale print_stretch_x print_stretch_y scan_scale scan_shift").split()
+          "print_scale print_stretch_x print_stretch_y scan_scale scan_stretch_x scan_stretch_y scan_stretch_z scan_rotation scan_shift").split()
 
 
 def cases(repeat, pairs, clean):
@@ -48,12 +47,8 @@ def main():
     parser.add_argument("--repeat", type=int, default=3)
     parser.add_argument("--pairs", type=int, default=18)
     parser.add_argument("--clean", type=int, default=18)
-    parser.add_argument("--nearest", type=pathlib.Path)
     a = parser.parse_args()
     lines = [json.loads(line) for line in a.results.read_text().splitlines()] if a.results.exists() else []
-    if a.nearest:
-        ask(a.program, nearest_cases(lines, a.nearest), a.nearest)
-        return
     engine = int(subprocess.run([a.program, "--engine"], capture_output=True, text=True, check=True).stdout)
     done = collections.Counter()
     older = collections.defaultdict(list)  # seeds of answers to ask for again
@@ -77,14 +72,6 @@ def main():
             unused += 1
     print(f"{sum(line.get('engine', 1) == engine for line in lines)} done, {len(todo)} to do", flush=True)
     ask(a.program, todo, a.results)
-
-
-def nearest_cases(lines, results):
-    """Those with one cause or none of the whole list, that the baseline has not answered."""
-    done = {json.loads(line)["seed"] for line in results.read_text().splitlines()} if results.exists() else set()
-    latest = {line["seed"]: line for line in lines if "error" not in line and len(line["hidden"]) < 2 and not line.get("left_out")}
-    return [(seed // 1000, ["--only", (line["hidden"] or ["none"])[0], "--levels", str(line["level"]), "--noise", str(line["sigma_mm"]), "--nearest"])
-            for seed, line in sorted(latest.items()) if seed not in done and seed % 1000 == 1]
 
 
 def ask(program, todo, results):

@@ -96,6 +96,10 @@ def diagnosed(a, seed, mould, cause, level, folder):
         found = json.loads((item / "report" / "diagnosis.json").read_text())
         line |= {key: found[key] for key in ("verdict", "reading", "doubtful", "doubts", "error_before_mm", "error_after_mm", "noise_floor_mm", "unexplained_before_mm",
                                              "unexplained_after_mm", "simulations")}
+        nearest = max(found["causes"], key=lambda f: f["likeness"])
+        line["nearest"] = [nearest["name"], nearest["likeness"]]
+        # How much better than a discrepancy field alone: of the answer that passed, which was tried last.
+        line["verdict_gain"] = next((t["gain_share"] for t in reversed(found["trials"]) if sorted(t["causes"]) == sorted(found["verdict"])), None)
         line["simulation"] = [one["name"] for one in found["simulation"] if one["taken"]]
         line["first"] = [{"name": f["name"], "probability": f["probability"], "strength": f["strength"], "interval": f["interval"], "values": f["values"],
                           "min_visible_strength": f["min_visible_strength"]} for f in found["causes"][:3]]

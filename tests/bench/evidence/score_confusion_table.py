@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Counts the lines of confusion_table and lists them: score_confusion_table.py FILE... [--engine N...] [--nearest FILE] prints docs/confusion_table.md.
+"""Counts the lines of confusion_table and lists them: score_confusion_table.py FILE... [--engine N...] prints docs/confusion_table.md.
 
 Of every case the newest engine's answer counts, or the newest of engines N.
 A hidden cause is visible if it is stronger than `min_visible_strength`, which the diagnosis states without knowing the truth."""
@@ -9,6 +9,7 @@ import collections
 import json
 import statistics
 
+import nearest_baseline
 from counted_shares import share
 
 named_level = {1: "strong", 0.5: "medium", 0.25: "weak"}
@@ -86,25 +87,12 @@ def doubts(cases):
         print(f"| {label} | " + " | ".join(cells) + " |")
 
 
-def baselines(cases, clean, nearest):
+def baselines(cases, clean):
     """The cause whose sensitivity is nearest to the residual, and a discrepancy field without causes."""
     print("\n## Baselines\n")
-    asked = [c for c in cases if c["seed"] in nearest]
-    quiet = [c for c in clean if c["seed"] in nearest]
-    if asked and quiet:
-        # It has no answer "nothing": it gets the threshold of its cosine that raises as many alarms as the diagnosis does.
-        alarms = sum(c["reading"] != "none" for c in quiet)
-        threshold = sorted((nearest[c["seed"]][0][1] for c in quiet), reverse=True)[alarms]
-        first = lambda c: nearest[c["seed"]][0]
-        print("*Nearest sensitivity*: the cause whose effect points most nearly along the residual of the calibrated simulation, in the same metric and beside the same material. "
-              f"It has no answer \"nothing\"; above a cosine of {threshold:.2f} it gives as many alarms on clean data as the diagnosis.\n")
-        print("| cases | diagnosis | nearest sensitivity | with that threshold |\n|---|---|---|---|")
-        rows = [(named_level.get(level, str(level)), lambda c, level=level: c["level"] == level) for level in sorted({c["level"] for c in asked}, reverse=True)]
-        rows += [(mould, lambda c, mould=mould: c["mould"] == mould) for mould in sorted({c["mould"] for c in asked})]
-        for label, belongs in rows + [("all", lambda c: True)]:
-            of = [c for c in asked if belongs(c)]
-            named = [c for c in of if first(c)[0] == c["hidden"][0]]
-            print(f"| {label} | {share([c for c in of if right(c)], of)} | {share(named, of)} | {share([c for c in named if first(c)[1] > threshold], of)} |")
+    rows = [(named_level.get(level, str(level)), lambda c, level=level: c["level"] == level) for level in sorted({c["level"] for c in cases}, reverse=True)]
+    rows += [(mould, lambda c, mould=mould: c["mould"] == mould) for mould in sorted({c["mould"] for c in cases})]
+    nearest_baseline.tell(cases, clean, lambda c: c["hidden"][0], right, lambda c: c["reading"] != "none", rows)
     tried = [(c, trial) for c in cases for trial in c["trials"] if trial[0] == "+".join(sorted(c["verdict"])) and len(c["verdict"]) == 1 and trial[2] > 0]
     if tried:
         fall = statistics.median(1 - trial[3] / trial[2] for _, trial in tried)
@@ -134,7 +122,6 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("files", nargs="+")
     parser.add_argument("--engine", type=int, nargs="+", help="counts the answers of these engines alone")
-    parser.add_argument("--nearest", help="answers of the baseline (run_confusion_table.py --nearest)")
     a = parser.parse_args()
     answers = [json.loads(line) for name in a.files for line in open(name) if line.startswith("{")]
     latest = {}
@@ -162,10 +149,7 @@ Causes were hidden in virtual objects and diagnosed. `score_confusion_table.py` 
     print(f"{len(cases)} cases, by the engine that answered: " + ", ".join(f"{engine}: {count}" for engine, count in sorted(by_engine.items())) + ".\n")
     by_mould(single, clean)
     doubts([c for c in cases if not c["left_out"]])
-    nearest = {}
-    if a.nearest:
-        nearest = {line["seed"]: line["nearest"] for line in map(json.loads, open(a.nearest)) if "nearest" in line}
-    baselines(single, clean, nearest)
+    baselines(single, clean)
     print("\n## Counts\n\n| count | result |\n|---|---|")
     for level in sorted({c["level"] for c in single}, reverse=True):
         for sigma in sorted({c["sigma_mm"] for c in single}):

@@ -39,6 +39,11 @@ std::vector<Effect> effects() {
           {"print_stretch_x", 0.02, [](O&, M& m, double s) { m.print_stretch_x = s; }},
           {"print_stretch_y", 0.02, [](O&, M& m, double s) { m.print_stretch_y = s; }},
           {"scan_scale", 0.01, [](O&, M& m, double s) { m.scan_scale = s; }},
+          {"scan_stretch_x", 0.02, [](O&, M& m, double s) { m.scan_stretch_x = s; }},
+          {"scan_stretch_y", 0.02, [](O&, M& m, double s) { m.scan_stretch_y = s; }},
+          {"scan_stretch_z", 0.02, [](O&, M& m, double s) { m.scan_stretch_z = s; }},
+          {"scan_turn_x_deg", 1, [](O&, M& m, double s) { m.scan_turn_x_deg = s; }},
+          {"scan_turn_z_deg", 1, [](O&, M& m, double s) { m.scan_turn_z_deg = s; }},
           {"scan_shift_x_mm", 1, [](O&, M& m, double s) { m.scan_shift_x_mm = s; }}};
 }
 

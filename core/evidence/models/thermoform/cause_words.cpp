@@ -49,6 +49,21 @@ std::string way(std::span<const double> by) {
   return text;
 }
 
+std::string degrees(double angle) { return with_digits(std::abs(angle), 2) + "°"; }
+
+/// "leans by 0.7°, too high on the left, and is turned by 1°, clockwise seen from above", by angles about x, y and z;
+/// the smaller of the two is left out where it hardly matters.
+std::string turned(std::span<const double> by) {
+  const double x = by[0], y = by.size() > 1 ? by[1] : 0, z = by.size() > 2 ? by[2] : 0, lean = std::hypot(x, y);
+  const std::string leans = "leans by " + degrees(lean) + ", too high " + side(-y, x);
+  const std::string turns =
+      "is turned by " + degrees(z) + (z > 0 ? ", counter-clockwise" : ", clockwise") + " seen from above";
+  constexpr double hardly = 0.15;
+  if (std::abs(z) <= hardly * lean) return leans;
+  if (lean <= hardly * std::abs(z)) return turns;
+  return leans + ", and " + turns;
+}
+
 }  // namespace
 
 std::string thermoform_cause_in_words(std::string_view cause, std::span<const double> values) {
@@ -79,8 +94,8 @@ std::string thermoform_cause_in_words(std::string_view cause, std::span<const do
     return "The sheet's rim was drawn in by about " + millimetres(v) + " from under the clamp.";
   if (cause == "mould_shift") return "The mould stood about " + way(values) + " of its place.";
   if (cause == "mould_rotation")
-    return "The mould stood turned by about " + with_digits(std::abs(v), 2) + "°, " +
-           (v > 0 ? "counter-clockwise" : "clockwise") + " seen from above.";
+    return "The mould stood turned by about " + degrees(v) + ", " + (v > 0 ? "counter-clockwise" : "clockwise") +
+           " seen from above.";
   if (cause == "mould_scale")
     return "The mould was about " + percent(v) + (v > 0 ? " larger" : " smaller") + " than its model.";
   if (cause == "print_scale")
@@ -90,6 +105,11 @@ std::string thermoform_cause_in_words(std::string_view cause, std::span<const do
            (cause == "print_stretch_x" ? " from side to side." : " from front to back.");
   if (cause == "scan_scale")
     return "The scan is about " + percent(v) + (v > 0 ? " larger" : " smaller") + " than the object.";
+  if (cause == "scan_stretch_x" || cause == "scan_stretch_y")
+    return "The scan is about " + percent(v) + (v > 0 ? " too long" : " too short") +
+           (cause == "scan_stretch_x" ? " from side to side." : " from front to back.");
+  if (cause == "scan_stretch_z") return "The scan is about " + percent(v) + (v > 0 ? " too high." : " too low.");
+  if (cause == "scan_rotation") return "The scan " + turned(values) + ".";
   if (cause == "scan_shift") return "The scan lies about " + way(values) + " from where the object was.";
   return "";
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "evidence/nearest_sensitivity.h"
+#include "evidence/diagnosis/likeness.h"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -7,11 +7,9 @@
 
 namespace formwright {
 
-std::vector<std::pair<std::string, double>> nearest_sensitivities(const ForwardModel& model,
-                                                                  const Explanations& tried) {
+std::vector<double> likenesses(const ForwardModel& model, const GramByStructure& gram) {
   // Row and column 0 are the residual, 1 + p parameter p. The first size of structure is none.
-  const Eigen::MatrixXd G =
-      tried.misfit().gram(residuals(model, tried.base().predictions), tried.sensitivities()).gram.front();
+  const Eigen::MatrixXd& G = gram.gram.front();
   const std::vector<int> base = model.base_parameters();
   const auto count = static_cast<Eigen::Index>(base.size());
   Eigen::MatrixXd of_base(count, count), to_base(count, G.cols());
@@ -21,7 +19,7 @@ std::vector<std::pair<std::string, double>> nearest_sensitivities(const ForwardM
       of_base(i, j) = G(1 + base[static_cast<std::size_t>(i)], 1 + base[static_cast<std::size_t>(j)]);
   }
   const Eigen::MatrixXd left = G - to_base.transpose() * of_base.completeOrthogonalDecomposition().solve(to_base);
-  std::vector<std::pair<std::string, double>> result;
+  std::vector<double> result;
   for (const Cause& cause : model.causes()) {
     const auto own = static_cast<Eigen::Index>(cause.parameters.size());
     Eigen::MatrixXd among(own, own);
@@ -33,9 +31,8 @@ std::vector<std::pair<std::string, double>> nearest_sensitivities(const ForwardM
     }
     const double squared =
         along.dot(among.completeOrthogonalDecomposition().solve(along)) / std::max(left(0, 0), 1e-300);
-    result.emplace_back(cause.name, std::sqrt(std::clamp(squared, 0.0, 1.0)));
+    result.push_back(std::sqrt(std::clamp(squared, 0.0, 1.0)));
   }
-  std::stable_sort(result.begin(), result.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
   return result;
 }
 

@@ -30,7 +30,8 @@ struct BundleObservation {
   Vec2 from_origin_mm{0, 0};  // on a strip: from its origin, in the machine's axes
   Vec2 picture_px{0, 0};
   Eigen::Matrix2d covariance_px2 = Eigen::Matrix2d::Identity();
-  bool used = true;  // false: an outlier
+  double shared_px = 0;  // of its error, that other photographs of the same point have alike; not used here
+  bool used = true;      // false: an outlier
 };
 
 /// The board's plane is horizontal. The frame is the machine's: strips are on the mean where they should be, without

@@ -4,6 +4,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "base/statistics.h"
@@ -17,11 +18,14 @@ constexpr int max_profiles = 64;     // along an edge
 constexpr int min_profiles = 8;
 constexpr double reach_cells = 0.5;  // of a profile, to each side: a cell inside of the edge other cells begin
 constexpr double max_reach_px = 12;
-constexpr double dark_share = 0.2;      // of an edge's profiles, that end beside a black cell
-constexpr double min_contrast = 1500;   // of 65535 of light between black and white
-constexpr double min_kept = 0.6;        // of an edge's profiles, for the edge to count
-constexpr double floor_px = 0.02;       // least scatter of an edge that is believed
-constexpr double own_error_px = 0.06;   // of a corner: pixels, compression and blur that no scatter shows
+constexpr double profile_ends = 11.0 / 12;  // of the reach: three places there, on the average, show black and white
+constexpr double dark_share = 0.2;          // of an edge's profiles, that end beside a black cell
+constexpr double min_contrast = 1500;       // of 65535 of light between black and white
+constexpr double min_kept = 0.6;            // of an edge's profiles, for the edge to count
+constexpr double floor_px = 0.02;           // least scatter of an edge that is believed
+constexpr double own_error_px = 0.06;       // of a corner: pixels, compression and blur that no scatter shows
+constexpr double shared_error_px = 0.04;    // the same that all photographs share: blur acts alike on the same mark
+constexpr double sharp_cells = 0.3;     // standard deviation of blur, up to which these two hold; then with its square
 constexpr double alike_profiles = 2.0;  // neighbouring profiles share pixels and blur: so many count as one
 
 /// offset(s) = c0 + c1 s + c2 s^2 across the chord, s from -1 to 1 along it.
@@ -29,6 +33,7 @@ struct Edge {
   Vec2 middle, half, normal;  // of the chord; the normal points out of the square
   Vec3 coefficients;
   Eigen::Matrix3d covariance;
+  double blur_px = 0;  // across the edge, standard deviation
 
   Vec2 at(double s) const { return middle + s * half + offset(s) * normal; }
   double offset(double s) const { return coefficients.dot(Vec3(1, s, s * s)); }
@@ -39,9 +44,9 @@ struct Edge {
   }
 };
 
-/// Where a profile crosses a level, and the light at its ends.
+/// Where a profile crosses a level and how steeply, and the light at its ends.
 struct Crossing {
-  double offset = 0, inner = 0, outer = 0;
+  double offset = 0, inner = 0, outer = 0, slope_per_px = 0;
 };
 
 /// The profile through `foot` along `normal`: where it is halfway between its inner and its outer end, or at `level`.
@@ -65,7 +70,7 @@ std::optional<Crossing> crossing(const LightPicture& picture, const Vec2& foot, 
                    b = value[static_cast<std::size_t>(i + half_count + 1)];
       if (!(a < level && b >= level)) continue;
       const double t = (i + (level - a) / (b - a)) * step;
-      if (std::abs(t) < std::abs(best)) best = t;
+      if (std::abs(t) < std::abs(best)) best = t, found.slope_per_px = (b - a) / step;
     }
     if (std::abs(best) > reach) return std::nullopt;
     centre += best;
@@ -74,6 +79,19 @@ std::optional<Crossing> crossing(const LightPicture& picture, const Vec2& foot, 
   }
   found.offset = centre;
   return found;
+}
+
+/// Standard deviation sigma of a Gaussian that blurs a step, from the light's difference between `end` before and
+/// behind it over its slope there: difference / slope = sqrt(2 pi) sigma erf(end / (sqrt(2) sigma)), which tends to 2
+/// end.
+double blur_of(double difference_over_slope, double end) {
+  double low = 0, high = 3 * end;
+  for (int round = 0; round < 30; ++round) {
+    const double sigma = 0.5 * (low + high);
+    const double would_be = std::sqrt(2 * std::numbers::pi) * sigma * std::erf(end / (std::numbers::sqrt2 * sigma));
+    (would_be < difference_over_slope ? low : high) = sigma;
+  }
+  return 0.5 * (low + high);
 }
 
 std::optional<Edge> fit_edge(const LightPicture& picture, const Vec2& from, const Vec2& to, double reach) {
@@ -89,7 +107,7 @@ std::optional<Edge> fit_edge(const LightPicture& picture, const Vec2& from, cons
   std::optional<double> level;
   for (int pass = 0; pass < 2; ++pass) {
     places.clear();
-    std::vector<double> inner, outer;
+    std::vector<double> inner, outer, slope;
     for (int i = 0; i < count; ++i) {
       const double s = used_share * (2 * (i + 0.5) / count - 1);
       const auto found = crossing(picture, edge.middle + s * edge.half, edge.normal, reach, level);
@@ -97,10 +115,13 @@ std::optional<Edge> fit_edge(const LightPicture& picture, const Vec2& from, cons
       places.emplace_back(s, found->offset);
       inner.push_back(found->inner);
       outer.push_back(found->outer);
+      slope.push_back(found->slope_per_px);
     }
     if (static_cast<double>(places.size()) < least) return std::nullopt;
     // White cells behind the border shine through it where the picture is blurred: the darkest fifth shows black.
-    level = 0.5 * (quantile(inner, dark_share) + median(outer));
+    const double black = quantile(inner, dark_share), white = median(outer);
+    level = 0.5 * (black + white);
+    edge.blur_px = blur_of((white - black) / std::max(median(slope), 1e-9), profile_ends * reach);
   }
   std::vector<double> weight(places.size(), 1.0);
   double sigma = 0, kept = 0;
@@ -152,12 +173,14 @@ std::optional<SquareCorners> refine_once(const LightPicture& picture, const std:
   const double area = 0.5 * std::abs((first[2] - first[0]).x() * (first[3] - first[1]).y() -
                                      (first[2] - first[0]).y() * (first[3] - first[1]).x());
   std::array<Edge, 4> edges;
+  std::array<double, 4> error_by_blur;
   for (std::size_t k = 0; k < 4; ++k) {
     const Vec2 &from = first[k], &to = first[(k + 1) % 4];
     const double cell = area / std::max(1.0, (to - from).norm()) / mark_cells;
     const auto edge = fit_edge(picture, from, to, std::clamp(reach_cells * cell, 1.5, max_reach_px));
     if (!edge) return std::nullopt;
     edges[k] = *edge;
+    error_by_blur[k] = std::max(1.0, std::pow(edge->blur_px / (sharp_cells * cell), 2));
   }
   SquareCorners result;
   for (std::size_t k = 0; k < 4; ++k) {
@@ -171,8 +194,10 @@ std::optional<SquareCorners> refine_once(const LightPicture& picture, const std:
     Eigen::Matrix2d across;
     across << along_a.y(), -along_a.x(), along_b.y(), -along_b.x();
     const Eigen::Matrix2d back = across.inverse();
+    const double by_blur = std::hypot(error_by_blur[(k + 3) % 4], error_by_blur[k]) / std::sqrt(2.0);
+    result.shared_px[k] = by_blur * shared_error_px;
     result.covariance_px2[k] = back * Vec2(a.variance(s_a), b.variance(s_b)).asDiagonal() * back.transpose() +
-                               own_error_px * own_error_px * Eigen::Matrix2d::Identity();
+                               std::pow(by_blur * own_error_px, 2) * Eigen::Matrix2d::Identity();
     if (!result.covariance_px2[k].allFinite()) return std::nullopt;
   }
   return result;

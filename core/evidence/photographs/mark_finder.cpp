@@ -90,6 +90,7 @@ class Readings {
     Reading reading;
     reading.corners.corner_px = from_back_left(refined->corner_px, read->code.quarter_turns);
     reading.corners.covariance_px2 = from_back_left(refined->covariance_px2, read->code.quarter_turns);
+    reading.corners.shared_px = from_back_left(refined->shared_px, read->code.quarter_turns);
     reading.wrong_cells = read->code.wrong_cells;
     const Quad& c = reading.corners.corner_px;
     reading.area = std::abs(cross(c[2] - c[0], c[3] - c[1]));

@@ -15,10 +15,7 @@
 namespace formwright {
 namespace {
 
-constexpr double far_strip_mm = 5;  // a strip farther off than this deserves a word
-// Pixels of a corner's error that all photographs share, so that it does not average out: compression and blur act
-// alike on the same mark. Measured on rendered photographs (tests/bench/evidence/bench_photographs.cpp).
-constexpr double shared_px = 0.04;
+constexpr double far_strip_mm = 5;              // a strip farther off than this deserves a word
 constexpr double other_scale_tolerance = 0.25;  // of spacing against size of marks, with which a sheet is another
 
 double printed_scale(const MarkSheet& sheet, const PhotographOptions& options) {
@@ -80,7 +77,7 @@ void add_points_of(PhotographMeasurement& m, const PhotographSolution& solution,
     const Vec3& place = solution.bundle.points[index(p)];
     // A board of another size makes everything larger about its middle.
     const double systematic = scale_sigma * (place - middle).norm();
-    const double shared = shared_px * pixel_at(solution.bundle, place);
+    const double shared = solution.shared_px[index(p)] * pixel_at(solution.bundle, place);
     const double variance =
         (solution.fit.covariance_mm2[index(p)].trace() + systematic * systematic) / 3 + shared * shared;
     const double sigma = std::sqrt(std::max(variance, 1e-12));

@@ -276,6 +276,7 @@ void add_sheet_points(PhotographSolution& solution, const std::vector<ReadPhotog
         o.camera = static_cast<int>(i);
         o.picture_px = m.corners.corner_px[c];
         o.covariance_px2 = m.corners.covariance_px2[c];
+        o.shared_px = m.corners.shared_px[c];
         of_corner[4 * index(m.mark) + c].push_back(o);
       }
   solution.point_of_corner.assign(of_corner.size(), -1);
@@ -313,7 +314,12 @@ void finish_report(PhotographSolution& solution) {
     squares[index(o.camera)] += d * d / 2;
     count[index(o.camera)] += 1;
   }
-  for (const auto& seen : of_point) solution.angle_rad.push_back(widest_angle_rad(rays_of(b, seen)));
+  for (const auto& seen : of_point) {
+    solution.angle_rad.push_back(widest_angle_rad(rays_of(b, seen)));
+    double sum = 0;
+    for (const BundleObservation* o : seen) sum += o->shared_px;
+    solution.shared_px.push_back(seen.empty() ? 0 : sum / static_cast<double>(seen.size()));
+  }
   for (std::size_t i = 0; i < squares.size(); ++i)
     solution.camera_rms_px.push_back(count[i] > 0 ? std::sqrt(squares[i] / count[i]) : 0);
 }

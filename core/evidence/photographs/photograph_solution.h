@@ -16,6 +16,7 @@ struct PhotographSolution {
   std::vector<int> point_of_corner;  // 4 per mark of the sheet: index into bundle.points, -1 where there is none
   std::set<int> narrow_marks;        // of the sheet, seen from one place only
   std::vector<double> angle_rad;     // per point: the largest between two of its rays
+  std::vector<double> shared_px;     // per point: BundleObservation::shared_px, the mean of its observations
   std::vector<double> camera_rms_px;
   int outliers = 0;
 };

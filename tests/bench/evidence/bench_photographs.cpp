@@ -31,6 +31,21 @@ void measure(const char* name, const test::Scene& scene, const test::Phone& phon
   std::fflush(stdout);
 }
 
+/// Blur of other sizes than the constants of mark_edges.cpp were chosen with.
+void measure_other_blurs(const test::Scene& scene) {
+  test::Phone phone;
+  phone.defocus_px = 1.5;
+  measure("defocus 1.5 px", scene, phone, 6);
+  phone.defocus_px = 0.5;
+  phone.motion_px = {-1, 2.5};
+  measure("moved by 2.7 px", scene, phone, 8);
+  phone = {};
+  phone.width = 3200;
+  phone.height = 2400;
+  phone.defocus_px = 2.8;
+  measure("8 megapixels, defocus 2.8 px", scene, phone, 6);
+}
+
 }  // namespace
 
 int main() {
@@ -84,4 +99,5 @@ int main() {
     drawn.bump.peak_mm = 50;
     measure("drawn by 1.8, 50 mm high", drawn, usual, 8);
   }
+  measure_other_blurs(scene);
 }

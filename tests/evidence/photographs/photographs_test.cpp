@@ -4,6 +4,7 @@
 #include <catch2/matchers/catch_matchers_string.hpp>
 
 #include "base/error.h"
+#include "base/statistics.h"
 #include "evidence/photographs/measured_truth.h"
 
 namespace formwright {
@@ -83,6 +84,38 @@ TEST_CASE("Photographs.HardOnesAreMeasuredToAThirdOfAMillimetre") {
   CHECK(e.percentile_95_mm < 0.6);
   CHECK(e.chi_square < 3);
   CHECK(e.within_2_sigma > 0.85);
+}
+
+TEST_CASE("Photographs.BlurredOnesSayThatTheyAreLessSure") {
+  const test::Scene scene = usual_scene();
+  const auto views = test::ring_of_views(5);
+  test::Phone sharp, blurred;
+  blurred.defocus_px = 1.6;
+  const test::Taken clear = test::take_photographs(scene, sharp, views),
+                    hazy = test::take_photographs(scene, blurred, views);
+  const auto error_of = [&](const std::vector<Photograph>& photographs, double& sigma_mm) {
+    const PhotographMeasurement m = measured(scene, photographs, test::options_of(scene));
+    std::vector<double> sigmas;
+    for (const auto& point : m.points) sigmas.push_back(point.sigma_mm);
+    sigma_mm = median(std::move(sigmas));
+    return test::truth_error(m, scene.bump);
+  };
+  double sharp_sigma = 0, blurred_sigma = 0, mixed_sigma = 0;
+  const test::TruthError of_sharp = error_of(clear.photographs, sharp_sigma),
+                         of_blurred = error_of(hazy.photographs, blurred_sigma);
+  INFO("sharp: median " << of_sharp.median_mm << ", sigma " << sharp_sigma << ", chi-square " << of_sharp.chi_square);
+  INFO("blurred: median " << of_blurred.median_mm << ", sigma " << blurred_sigma << ", chi-square "
+                          << of_blurred.chi_square);
+  CHECK(of_blurred.median_mm > 1.5 * of_sharp.median_mm);
+  CHECK(blurred_sigma > 1.5 * sharp_sigma);
+  CHECK(of_blurred.chi_square > 0.2);
+  CHECK(of_blurred.chi_square < 1.5);
+  // A blurred photograph beside sharp ones has little weight: it does no harm.
+  std::vector<Photograph> mixed = clear.photographs;
+  mixed.back() = hazy.photographs.back();
+  const std::vector<Photograph> without(mixed.begin(), mixed.end() - 1);
+  const double median_without = error_of(without, mixed_sigma).median_mm;
+  CHECK(error_of(mixed, mixed_sigma).median_mm < 1.1 * median_without);
 }
 
 TEST_CASE("Photographs.WhatCannotBeMeasuredIsRefusedOrNamed") {

@@ -319,8 +319,10 @@ class Diagnostician {
     }
   }
 
-  /// Causes that do the same as a named one as far as these data go.
+  /// Causes that do the same as a named one as far as these data go. Where something stays unexplained, probabilities
+  /// do not tell such causes apart: what the simulation gets wrong decides between them.
   void find_twins() {
+    const bool in_doubt = result_.doubtful();
     const GramByStructure gram =
         tried_.misfit().gram(residuals(model_, result_.base.predictions), tried_.sensitivities());
     for (const int named : result_.verdict)
@@ -331,6 +333,8 @@ class Diagnostician {
         const bool undecided = finding_of(other).probability > 0.15 * finding_of(named).probability;
         if (alike > inseparable_likeness || (undecided && alike > 0.5))
           result_.not_separable.push_back({named, other, alike});
+        if (in_doubt && alike > inseparable_likeness && result_.reading == Reading::cause)
+          result_.reading = Reading::cannot_separate;
         if (!undecided) continue;
         if (alike > 0.5 && result_.reading == Reading::cause) result_.reading = Reading::cannot_separate;
         else if (alike <= 0.5) doubt(nearly_as_likely);

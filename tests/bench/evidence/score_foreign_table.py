@@ -135,10 +135,11 @@ def tell_baselines(title, cases):
     faulty = [c for c in answered if c["cause"] != "none" and c.get("in_the_list", True)]
     clean = [c for c in answered if c["cause"] == "none"]
     rows = [(mould, lambda c, mould=mould: c["mould"] == mould) for mould in sorted({c["mould"] for c in faulty})]
-    nearest_baseline.tell(faulty, clean, lambda c: c["cause"], right, lambda c: c["reading"] != "none", rows)
+    threshold = nearest_baseline.tell(faulty, clean, lambda c: c["cause"], right, lambda c: c["reading"] != "none", rows)
     foreign = [c for c in answered if not c.get("in_the_list", True)]
-    if foreign:
-        print(f"\nIt names one of its causes whatever is hidden, and has no doubts: so in {share_of(len(foreign), len(foreign))} of the causes that are in no list.")
+    if foreign and threshold is not None:
+        wrong = [c for c in foreign if c["nearest"][1] > threshold]
+        print(f"\nOf the causes that are in no list it calls {share_of(len(wrong), len(foreign))} something else, even with that threshold, and has no doubts.")
     gains = [(c, c["verdict_gain"]) for c in faulty if c["verdict_gain"] is not None and named(c)]
     better = [gain for _, gain in gains if gain > 0]
     print(f"\n*A discrepancy field and no causes*: on the blocks that were left out, the named causes and the field together predict better than the field alone in {share(better, faulty)} of all cases. "

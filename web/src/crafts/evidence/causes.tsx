@@ -2,9 +2,15 @@
 // Ranked causes, each with its strength; opened, what it is, what speaks for it and what to do.
 import { useSignal } from '@preact/signals';
 import { useId } from 'preact/hooks';
-import { Icon, formatNumber, withUnit } from '../../ui';
+import { Icon, formatNumber } from '../../ui';
 import type { Cause, Diagnosis } from '../../shared/diagnosis/diagnosis';
-import { formatEstimate, minListed, oddsAgainstNone, percent } from '../../shared/diagnosis/diagnosis';
+import {
+  formatEstimate,
+  formatPart,
+  minListed,
+  oddsAgainstNone,
+  percent,
+} from '../../shared/diagnosis/diagnosis';
 import type { EvidenceSession } from './evidence_session';
 import { comparing } from './evidence_document';
 
@@ -131,7 +137,7 @@ function Details({ session, cause }: { session: EvidenceSession; cause: Cause })
               {properties[name]?.title ?? name}
               {properties[name]?.description ? <small>{properties[name].description}</small> : null}
             </dt>
-            <dd>{withUnit(formatNumber(value), properties[name]?.['x-unit'] ?? '')}</dd>
+            <dd>{formatPart(value, cause.strength, properties[name]?.['x-unit'] ?? '')}</dd>
           </div>
         ))}
       </dl>

@@ -1,7 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { describe, expect, it } from 'vitest';
 import type { Report } from '../../jobs/contract';
-import { formatEstimate, oddsAgainstNone, percent, readDiagnosis, readingWords } from './diagnosis';
+import {
+  formatEstimate,
+  formatPart,
+  oddsAgainstNone,
+  percent,
+  readDiagnosis,
+  readingWords,
+} from './diagnosis';
 import { extensionWords, goodPartWords, sureWords, whyWords } from './diagnosis_words';
 
 const report: Report = {
@@ -160,5 +167,13 @@ describe('a diagnosis', () => {
     expect(formatEstimate({ value: 0.396, low: 0.3815, high: 0.4105 }, '')).toBe('0.40 ± 0.01');
     expect(formatEstimate({ value: -1.52, low: -1.8, high: -1.2 }, 'mm')).toBe('\u22121.5 ± 0.3\u2009mm');
     expect(formatEstimate({ value: 14, low: 10, high: 18 }, '°')).toBe('14 ± 4°');
+  });
+
+  it('gives no more digits to a part than the whole has', () => {
+    const turn = { value: 1.09, low: 1.02, high: 1.16 };
+    expect(formatPart(0.6, turn, '°')).toBe('0.60°');
+    expect(formatPart(-0.90412, turn, '°')).toBe('\u22120.90°');
+    expect(formatPart(-0.0044, turn, '°')).toBe('0.00°');
+    expect(formatPart(0.0044, { value: 1, low: 1, high: 1 }, '°')).toBe('0.00440°');
   });
 });

@@ -230,12 +230,25 @@ export function percent(probability: number): string {
 }
 
 /** "0.40 ± 0.01 mm": as many digits as the doubt leaves. */
-export function formatEstimate({ value, low, high }: Estimate, unit: string): string {
-  const doubt = (high - low) / 2;
-  if (!(doubt > 0)) return withUnit(formatNumber(value), unit);
+export function formatEstimate(estimate: Estimate, unit: string): string {
+  const doubt = doubtOf(estimate);
+  if (!(doubt > 0)) return withUnit(formatNumber(estimate.value), unit);
+  return withUnit(`${rounded(estimate.value, doubt)} ± ${rounded(doubt, doubt)}`, unit);
+}
+
+/** "0.60°" of a quantity that is part of `whole`, as the angle about one axis is of a turn: no more digits than the whole
+ *  has. */
+export function formatPart(value: number, whole: Estimate, unit: string): string {
+  const doubt = doubtOf(whole);
+  return withUnit(doubt > 0 ? rounded(value, doubt) : formatNumber(value), unit);
+}
+
+const doubtOf = ({ low, high }: Estimate): number => (high - low) / 2;
+
+function rounded(value: number, doubt: number): string {
   const decimals = Math.min(6, Math.max(0, -Math.floor(Math.log10(doubt))));
-  const fixed = (x: number) => x.toFixed(decimals).replace(/^-/, '\u2212');
-  return withUnit(`${fixed(value)} ± ${fixed(doubt)}`, unit);
+  const digits = Math.abs(value).toFixed(decimals);
+  return value < 0 && Number(digits) > 0 ? `\u2212${digits}` : digits;
 }
 
 /** How many times more probable the data are with a cause than without any, as a power of ten; null where the report does

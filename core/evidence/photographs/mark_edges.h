@@ -11,8 +11,8 @@ namespace formwright {
 struct SquareCorners {
   std::array<Vec2, 4> corner_px;                  // in the order of the first guess
   std::array<Eigen::Matrix2d, 4> covariance_px2;  // from the scatter of the edges' points, and what no scatter shows
-  std::array<double, 4>
-      shared_px{};  // of the error, what every photograph as sharp as this has alike: no average helps
+  /// Of the error, what every photograph as sharp as this has alike, so that it does not average out.
+  std::array<double, 4> shared_px{};
 };
 
 /// Along every edge, profiles across it are searched for the place where the light is halfway between black and white;

@@ -66,7 +66,8 @@ struct MeasurementEffects {
     return print_factors(print_scale, print_stretch_x, print_stretch_y).cwiseProduct(printed_mm);
   }
 
-  /// measured = turn (1 + scale) (1 + stretch) true + shift.
+  /// measured = turn (1 + scale) (1 + stretch) true + shift, of places from the middle of the opening on the raised
+  /// base plate.
   Eigen::Affine3d scan() const {
     constexpr double per_degree = std::numbers::pi / 180;
     Eigen::Affine3d scan(Eigen::Translation3d(scan_shift_x_mm, scan_shift_y_mm, scan_shift_z_mm));

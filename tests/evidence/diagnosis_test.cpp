@@ -153,7 +153,7 @@ TEST_CASE("Diagnosis.OwnsUpToTwins") {
 }
 
 /// The data prefer the hidden one by far; but what stays unexplained could tip the scales between two so alike.
-TEST_CASE("Diagnosis.InDoubtTwinsAreNotToldApart") {
+TEST_CASE("Diagnosis.InDoubtItDoesNotSeparateCausesThatAreAlike") {
   for (const double unexplained : {0.0, 0.25}) {
     ToyModel model(2000, 1, true);
     Eigen::VectorXd truth = model.nominal();

@@ -320,7 +320,7 @@ class Diagnostician {
   }
 
   /// Causes that do the same as a named one as far as these data go. Where something stays unexplained, probabilities
-  /// do not tell such causes apart: what the simulation gets wrong decides between them.
+  /// do not separate such causes: what the simulation gets wrong decides between them.
   void find_twins() {
     const bool in_doubt = result_.doubtful();
     const GramByStructure gram =

@@ -3,7 +3,7 @@
 from counted_shares import share
 
 
-def tell(asked, clean, hidden, right, alarm, rows):
+def print_table(asked, clean, hidden, right, alarm, rows):
     """Prints a table, and gives the threshold. Of a case, `hidden` is its cause, `right` whether the diagnosis names it first, `alarm` whether it says anything but none; rows are (label, condition).
     case["nearest"] is (name, cosine)."""
     asked, clean = [[c for c in cases if "nearest" in c] for cases in (asked, clean)]
@@ -12,7 +12,8 @@ def tell(asked, clean, hidden, right, alarm, rows):
     # It has no answer "nothing": it gets the threshold of its cosine that raises as many alarms as the diagnosis does.
     threshold = (sorted((c["nearest"][1] for c in clean), reverse=True) + [0])[sum(map(alarm, clean))]
     print("*Nearest sensitivity*: the cause whose effect points most nearly along the residual of the calibrated simulation, in the same metric and beside the same material. "
-          f"It has no answer \"nothing\"; above a cosine of {threshold:.2f} it gives as many alarms on clean data as the diagnosis.\n")
+          f"It has no answer \"nothing\"; above a cosine of {threshold:.2f} it gives as many alarms on clean data as the diagnosis. "
+          f"Answers that have it: {len(asked)} with a cause, {len(clean)} clean.\n")
     print("| cases | diagnosis | nearest sensitivity | with that threshold |\n|---|---|---|---|")
     for label, belongs in rows + [("all", lambda c: True)]:
         of = [c for c in asked if belongs(c)]

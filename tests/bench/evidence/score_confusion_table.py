@@ -92,7 +92,7 @@ def baselines(cases, clean):
     print("\n## Baselines\n")
     rows = [(named_level.get(level, str(level)), lambda c, level=level: c["level"] == level) for level in sorted({c["level"] for c in cases}, reverse=True)]
     rows += [(mould, lambda c, mould=mould: c["mould"] == mould) for mould in sorted({c["mould"] for c in cases})]
-    nearest_baseline.tell(cases, clean, lambda c: c["hidden"][0], right, lambda c: c["reading"] != "none", rows)
+    nearest_baseline.print_table(cases, clean, lambda c: c["hidden"][0], right, lambda c: c["reading"] != "none", rows)
     tried = [(c, trial) for c in cases for trial in c["trials"] if trial[0] == "+".join(sorted(c["verdict"])) and len(c["verdict"]) == 1 and trial[2] > 0]
     if tried:
         fall = statistics.median(1 - trial[3] / trial[2] for _, trial in tried)

@@ -96,7 +96,7 @@ Sheets that `tests/foreign_laboratory` formed, with a simulation of another kind
     table("By cause", [(cause, [c for c in strong if c["cause"] == cause]) for cause in sorted({c["cause"] for c in strong} - {"none"})
                        if all(c.get("in_the_list", True) for c in strong if c["cause"] == cause)])
     tell_of_causes_in_no_list(strong)
-    tell_baselines("Baselines", strong)
+    print_baselines("Baselines", strong)
     good = [c for c in cases if "error" not in c]
     if good:
         clean = [c["error_before_mm"] for c in good if c["cause"] == "none"]
@@ -109,7 +109,7 @@ Sheets that `tests/foreign_laboratory` formed, with a simulation of another kind
     if beside:
         table("Beside a good part", by_mould([c for c in beside if c["level"] == 1]))
         tell_of_causes_in_no_list(beside)
-        tell_baselines("Baselines beside a good part", beside)
+        print_baselines("Baselines beside a good part", beside)
         print("\nA sheet without fault over the same mould, of the same machine and plastic, with marks and noise of its own, was given as a good part (`--good-part`).")
         list_answers("Every answer beside a good part", beside)
     if known:
@@ -126,7 +126,7 @@ def tell_of_causes_in_no_list(cases):
         print(f"\nCauses that are in no list ({names}): unknown, none or in doubt in {share_of(careful, len(foreign))}.")
 
 
-def tell_baselines(title, cases):
+def print_baselines(title, cases):
     """The cause whose sensitivity is nearest to the residual, and a discrepancy field without causes."""
     answered = [c for c in cases if "nearest" in c]
     if not answered:
@@ -135,13 +135,12 @@ def tell_baselines(title, cases):
     faulty = [c for c in answered if c["cause"] != "none" and c.get("in_the_list", True)]
     clean = [c for c in answered if c["cause"] == "none"]
     rows = [(mould, lambda c, mould=mould: c["mould"] == mould) for mould in sorted({c["mould"] for c in faulty})]
-    threshold = nearest_baseline.tell(faulty, clean, lambda c: c["cause"], right, lambda c: c["reading"] != "none", rows)
+    threshold = nearest_baseline.print_table(faulty, clean, lambda c: c["cause"], right, lambda c: c["reading"] != "none", rows)
     foreign = [c for c in answered if not c.get("in_the_list", True)]
     if foreign and threshold is not None:
         wrong = [c for c in foreign if c["nearest"][1] > threshold]
         print(f"\nOf the causes that are in no list it calls {share_of(len(wrong), len(foreign))} something else, even with that threshold, and has no doubts.")
-    gains = [(c, c["verdict_gain"]) for c in faulty if c["verdict_gain"] is not None and named(c)]
-    better = [gain for _, gain in gains if gain > 0]
+    better = [c["verdict_gain"] for c in faulty if named(c) and (c["verdict_gain"] or 0) > 0]
     print(f"\n*A discrepancy field and no causes*: on the blocks that were left out, the named causes and the field together predict better than the field alone in {share(better, faulty)} of all cases. "
           f"Their error is {100 * statistics.median(better):.0f} % lower there (median)." if better else "")
 

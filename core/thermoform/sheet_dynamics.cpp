@@ -46,13 +46,6 @@ SheetVariation variation_of(const SheetMesh& sheet, const ThermoformOptions& o) 
   return variation;
 }
 
-/// Where the rim has gone, per mm by which the clamp slips: inwards on every side, at the corners from both, and
-/// between so smoothly that no triangle at the rim is turned over.
-Vec2 inward(const Vec2& flat_mm, const ThermoformOptions& o) {
-  const double xi = 2 * flat_mm.x() / o.clamp_opening_x_mm, eta = 2 * flat_mm.y() / o.clamp_opening_y_mm;
-  return {-xi * xi * xi, -eta * eta * eta};
-}
-
 double shortest_edge(const SheetMesh& sheet) {
   const Vec2 a = sheet.flat_mm.row(sheet.F(0, 0)), b = sheet.flat_mm.row(sheet.F(0, 1)),
              c = sheet.flat_mm.row(sheet.F(0, 2));
@@ -110,6 +103,8 @@ SheetDynamics::SheetDynamics(const SheetMesh& sheet, const ThermoformOptions& op
   if (options.slip > 0 && contact_)
     friction_ = std::make_unique<SheetFriction>(sheet, 1 / options.slip,
                                                 options.young_modulus_pa * 1e-6 * options.sheet_thickness_mm);
+  if (options.clamp_slip_mm > 0)
+    clamp_slip_ = std::make_unique<ClampSlip>(sheet, Vec2(options.clamp_opening_x_mm, options.clamp_opening_y_mm));
   none_held_.assign(held_.size(), moves_freely);
   if (contact_)
     parallel_for(known_.size(), vertex_grain, [&](std::size_t begin, std::size_t end) {
@@ -251,8 +246,8 @@ SheetDynamics::Outcome SheetDynamics::step(double dt_s, const StepLoad& load, do
   for (Eigen::Index i = 0; i < x.rows(); ++i) {
     if (sheet_.clamped[static_cast<std::size_t>(i)]) {
       x.row(i) += load.clamp_shift.transpose();
-      if (load.clamp_slip_mm != 0)
-        x.row(i).head<2>() += load.clamp_slip_mm * inward(sheet_.flat_mm.row(i).transpose(), options_).transpose();
+      if (load.clamp_slip_mm > 0)
+        x.row(i).head<2>() += load.clamp_slip_mm * clamp_slip_->movement(static_cast<int>(i)).transpose();
     } else if (!held_[static_cast<std::size_t>(i)]) {
       if (has_guess) x.row(i) = guess_.row(i);
       else x.row(i) += dt_s * v_.row(i);
@@ -350,6 +345,7 @@ SheetDynamics::Outcome SheetDynamics::step(double dt_s, const StepLoad& load, do
   membrane_.end_step(x, dt_s,
                      chill_ ? std::span<const double>(chill_->stiffness_factors()) : std::span<const double>());
   x_ = std::move(x);
+  if (clamp_slip_ && !free_.empty()) clamp_slip_->feel(force);
   if (friction_) {
     begin_membrane_step();
     assemble(x_, std::numeric_limits<double>::infinity(), load, force, nullptr);

@@ -10,6 +10,7 @@
 #include "thermoform/solver/block_cg.h"
 #include "thermoform/contact/contact_chill.h"
 #include "thermoform/solver/face_strips.h"
+#include "thermoform/sheet/clamp_slip.h"
 #include "thermoform/sheet/hinge_bending.h"
 #include "thermoform/sheet/membrane.h"
 #include "thermoform/contact/mould_contact.h"
@@ -24,7 +25,7 @@ struct StepLoad {
   double gravity_mm_per_s2 = 9806.65;
   double pressure_mpa = 0;  // difference across the sheet at the end of the step, pushing against the faces' normals
   Vec3 clamp_shift = Vec3::Zero();  // mm, of the rim in this step
-  double clamp_slip_mm = 0;         // by which the clamp slips in this step: its rim moves in
+  double clamp_slip_mm = 0;         // by which the rim comes in where the sheet pulls hardest
   bool settling = false;            // nothing grows any more: what slides is to come to rest (SheetFriction::decide)
   bool quasi_static = false;        // leave inertia out
 };
@@ -89,6 +90,7 @@ class SheetDynamics {
   std::unique_ptr<HingeBending> bending_;
   std::unique_ptr<ContactChill> chill_;      // null without cooling
   std::unique_ptr<SheetFriction> friction_;  // null where what touches sticks
+  std::unique_ptr<ClampSlip> clamp_slip_;    // null where the clamp holds
   PointContacts points_;
   BlockMatrix matrix_;
   BlockCg cg_;

@@ -86,6 +86,18 @@ TEST_CASE("Answers.WhatExplainsTooLittleIsACauseThatIsNotInTheList") {
   CHECK_THAT(answers.front().probability, WithinAbs(0.9, 1e-12));
 }
 
+TEST_CASE("Answers.WhatNeedsAnotherMaterialIsACauseThatIsNotInTheList") {
+  const auto hypotheses = weighed({explanation({}, false, std::log(0.6)), explanation({}, true, std::log(0.1)),
+                                   explanation({1}, false, std::log(0.3))});
+  const auto answers = answers_of(hypotheses, {{{}, {}, Failure::other_material, 0}});
+  CHECK(answers.front().unknown_cause);
+  CHECK_THAT(probability_of(answers, {}, true), WithinAbs(0.7, 1e-12));
+  CHECK_THAT(probability_of(answers, {1}, false), WithinAbs(0.3, 1e-12));
+  // A cause that failed, too, leaves nothing else.
+  const auto both = answers_of(hypotheses, {{{1}, {}, Failure::near_zero, 0}, {{}, {}, Failure::other_material, 0}});
+  CHECK_THAT(probability_of(both, {}, true), WithinAbs(1, 1e-12));
+}
+
 TEST_CASE("Answers.AddUpToOneWhateverFails") {
   std::mt19937 random(8);
   for (int round = 0; round < 200; ++round) {

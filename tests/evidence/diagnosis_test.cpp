@@ -139,6 +139,53 @@ TEST_CASE("Diagnosis.SaysUnknownToWhatIsNotInTheList") {
   CHECK((d.reading == Reading::unknown || d.doubtful()));
 }
 
+TEST_CASE("Diagnosis.AMaterialThatWasMeasuredAndIsAnotherNowIsNotNothing") {
+  for (const double higher : {1.05, 1.3}) {
+    ToyModel model;
+    model.set_measured_height(0.05);
+    Eigen::VectorXd u = model.nominal();
+    u[0] = std::log(higher);
+    model.measure(u, 0.05, 3);
+    SimulationBag bag(model);
+    Context context;
+    const Diagnosis d = diagnose(bag, {}, context);
+    CAPTURE(higher);
+    CHECK(d.verdict.empty());
+    CHECK(d.reading == (higher < 1.2 ? Reading::none : Reading::unknown));
+    CHECK(d.answers.front().unknown_cause == (higher > 1.2));
+    CHECK((!d.failed.empty() && d.failed.back().failure == Failure::other_material) == (higher > 1.2));
+  }
+}
+
+/// What explains little is `unknown` where much is left without it, and nothing where hardly anything is.
+TEST_CASE("Diagnosis.WhereHardlyAnythingIsLeftWhatExplainsLittleOfItIsNothing") {
+  for (const double max_misfit_left : {0.018, 0.025}) {
+    ToyModel model(1000, 4);
+    model.set_max_misfit_left(max_misfit_left);
+    Eigen::VectorXd u = model.nominal();
+    u[2] = 0.12;
+    model.measure(u, 0.05, 4);
+    Measurement& m = model.measurement();
+    for (Eigen::Index i = 0; i < m.measured.rows(); ++i)
+      m.measured(i, 1) += 0.03 * std::sin(9 * m.place(i, 0)) * std::cos(8 * m.place(i, 1) + 1);
+    const Diagnosis d = diagnosed(model);
+    CAPTURE(max_misfit_left, d.unexplained_before);
+    const bool much_is_left = max_misfit_left < 0.02;
+    CHECK(d.reading == (much_is_left ? Reading::unknown : Reading::none));
+    REQUIRE_FALSE(d.failed.empty());
+    CHECK(d.failed.front().failure == (much_is_left ? Failure::explains_too_little : Failure::nothing_to_explain));
+    CHECK(d.answers.front().causes.empty());
+    CHECK(d.answers.front().unknown_cause == much_is_left);
+    CHECK(d.verdict.empty() == !much_is_left);
+    CHECK(d.doubtful() == much_is_left);
+    if (!much_is_left) {
+      CHECK(d.extended.u == d.base.u);
+      CHECK(d.held_out.after.mean == d.held_out.before.mean);
+      CHECK(d.unexplained_after == d.unexplained_before);
+    }
+  }
+}
+
 TEST_CASE("Diagnosis.OwnsUpToTwins") {
   ToyModel model(400, 1, true);
   Eigen::VectorXd truth = model.nominal();

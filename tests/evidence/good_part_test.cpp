@@ -106,6 +106,27 @@ TEST_CASE("GoodPart.thickness_that_it_misses_is_not_missed_again_but_a_rim_is_it
   CHECK_THAT(read(2)[0], WithinAbs(o.sheet_thickness_mm, 1e-9));
 }
 
+TEST_CASE("GoodPart.its_material_is_kept_near_and_half_the_misfit_is_known") {
+  ThermoformModelOptions options = beside({measured("June", 1, {})});
+  options.profile.parameters["young_modulus_pa"] = 3e6;
+  const FormedObject today = measured("today", 2, {});
+  const ThermoformModel model({today}, options);
+  options.good_parts.reset();
+  const ThermoformModel alone({today}, options);
+  const auto modulus = [](const ThermoformModel& m) {
+    return *std::find_if(m.parameters().begin(), m.parameters().end(),
+                         [](const ModelParameter& p) { return p.name == "young_modulus_pa"; });
+  };
+  CHECK(modulus(model).was_measured);
+  CHECK_FALSE(modulus(alone).was_measured);
+  CHECK_THAT(modulus(model).prior_sd, WithinAbs(0.5 * modulus(alone).prior_sd, 1e-12));
+  CHECK_THAT(modulus(model).low_u(), WithinAbs(-4 * modulus(model).prior_sd, 1e-12));
+  CHECK_THAT(modulus(model).high_u(), WithinAbs(4 * modulus(model).prior_sd, 1e-12));
+  CHECK(modulus(alone).high_u() > 3 * modulus(model).high_u());
+  CHECK(model.known_misfit() == 0.5 * alone.known_misfit());
+  CHECK(model.max_misfit_left() == alone.max_misfit_left());
+}
+
 TEST_CASE("GoodPart.it_must_be_of_the_same_mould") {
   const FormedObject object = measured("today", 2, {});
   FormedObject other = measured("June", 1, {});
@@ -136,7 +157,7 @@ TEST_CASE("GoodPart.it_must_be_of_the_same_mould") {
 }
 
 TEST_CASE("GoodPart.what_has_changed_since_is_found") {
-  HiddenEffect effect{"print_scale", {{"print_scale", 0.01}}};
+  const HiddenEffect effect{"print_scale", {{"print_scale", 0.01}}};
   const FormedObject good = measured("June", 1, {}), today = measured("today", 2, {effect});
   ThermoformModelOptions options;
   options.triangles = few_triangles / 2;

@@ -57,6 +57,7 @@ class ToyModel : public ForwardModel {
   const std::vector<Cause>& causes() const override { return causes_; }
   const std::vector<Measurement>& measurements() const override { return measurements_; }
   double known_misfit() const override { return 0.03; }
+  double max_misfit_left() const override { return max_misfit_left_; }
   Eigen::MatrixXd predict(int, const Eigen::VectorXd& u, const Context&) const override {
     const Measurement& m = measurements_.front();
     Eigen::MatrixXd y(m.place.rows(), 2);
@@ -90,11 +91,18 @@ class ToyModel : public ForwardModel {
     for (ModelParameter& p : parameters_)
       if (p.role == ParameterRole::effect) p.usual_sd = usual_sd;
   }
+  void set_max_misfit_left(double max_misfit_left) { max_misfit_left_ = max_misfit_left; }
+  /// The height was measured before.
+  void set_measured_height(double prior_sd) {
+    parameters_.front().prior_sd = prior_sd;
+    parameters_.front().was_measured = true;
+  }
   void set_gain_error(double share) {
     for (Cause& cause : causes_) cause.gain_error = share;
   }
 
  private:
+  double max_misfit_left_ = 0.018;
   std::vector<ModelParameter> parameters_;
   std::vector<Cause> causes_;
   std::vector<Measurement> measurements_;

@@ -50,6 +50,12 @@ double uniform(std::mt19937_64& random, double low, double high) {
   return low + (high - low) * (static_cast<double>(random() >> 11) * per_integer);
 }
 
+// By the transform of Box and Muller.
+double normal(std::mt19937_64& random) {
+  const double radius = std::sqrt(-2 * std::log(1 - uniform(random, 0, 1)));
+  return radius * std::cos(uniform(random, 0, 2 * std::numbers::pi));
+}
+
 bool acts_on_measurement(std::string_view cause) { return cause.starts_with("print_") || cause.starts_with("scan_"); }
 
 Faults draw_faults(std::string_view cause, double level, std::mt19937_64& random) {

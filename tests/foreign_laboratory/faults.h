@@ -71,5 +71,7 @@ std::vector<std::pair<std::string, double>> values_of(const Faults& faults);
 
 /// Uniform between two bounds, with the same bits everywhere.
 double uniform(std::mt19937_64& random, double low, double high);
+/// Normal with mean 0 and standard deviation 1, the same way.
+double normal(std::mt19937_64& random);
 
 }  // namespace formwright::foreign_laboratory

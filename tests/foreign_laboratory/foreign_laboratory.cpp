@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Forms and measures one object in the laboratory of another kind, for evidence-diagnose:
 //   foreign_laboratory --mould NAME --cause NAME [--level 1|0.5|0.25] [--noise MM] [--points N] [--seed N] [--cells N]
-//                      [--world-seed N] --out DIR
+//                      [--world-seed N] [--day-seed N] --out DIR
 //   foreign_laboratory --names        the moulds and the causes
 #include <chrono>
 #include <cstdio>
@@ -55,6 +55,7 @@ int run(int argument_count, char** arguments) {
     else if (flag == "--points") request.scan.points = count(flag, value);
     else if (flag == "--seed") request.seed = static_cast<unsigned>(count(flag, value));
     else if (flag == "--world-seed") request.world_seed = static_cast<unsigned>(count(flag, value));
+    else if (flag == "--day-seed") request.day_seed = static_cast<unsigned>(count(flag, value));
     else if (flag == "--cells") request.forming.cells = count(flag, value);
     else if (flag == "--out") out = value;
     else throw std::invalid_argument(flag + ": unknown; see the head of foreign_laboratory.cpp");

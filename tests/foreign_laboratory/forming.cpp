@@ -46,8 +46,8 @@ class Forming {
     kelvin_.resize(count);
     for (int node = 0; node < grid.node_count(); ++node) {
       const double xi = 2 * grid.flat_mm(node).x() / grid.width_mm, eta = 2 * grid.flat_mm(node).y() / grid.length_mm;
-      kelvin_[static_cast<std::size_t>(node)] = world.polymer.forming_temperature_k - faults.colder_right_k * xi -
-                                                faults.colder_back_k * eta -
+      kelvin_[static_cast<std::size_t>(node)] = world.polymer.forming_temperature_k + world.warmer_k -
+                                                faults.colder_right_k * xi - faults.colder_back_k * eta -
                                                 faults.colder_corners_k * (xi * xi + eta * eta - 1);
     }
     motion_.membrane().set_temperatures(kelvin_);
@@ -80,8 +80,9 @@ class Forming {
     FlatSheet flat;
     flat.anisotropy = faults_.anisotropy;
     flat.thickness_mm = [this](double x, double y) {
-      return machine_.thickness_mm * (1 + faults_.thicker_right * 2 * x / machine_.opening_x_mm +
-                                      faults_.thicker_back * 2 * y / machine_.opening_y_mm);
+      return machine_.thickness_mm * (1 + world_.thicker) *
+             (1 + faults_.thicker_right * 2 * x / machine_.opening_x_mm +
+              faults_.thicker_back * 2 * y / machine_.opening_y_mm);
     };
     std::vector<char> held(static_cast<std::size_t>(grid.node_count()));
     for (int node = 0; node < grid.node_count(); ++node) held[static_cast<std::size_t>(node)] = grid.on_rim(node);
@@ -244,6 +245,15 @@ World draw_world(std::mt19937_64& random) {
   world.pump_s *= factor(0.3);
   world.dead_volume_mm3 *= factor(0.3);
   world.hold_s *= factor(0.2);
+  return world;
+}
+
+World on_another_day(World world, std::mt19937_64& random) {
+  world.warmer_k = 2 * normal(random);
+  world.thicker = 0.01 * normal(random);
+  world.pump_s *= std::exp(0.05 * normal(random));
+  world.hold_s *= std::exp(0.02 * normal(random));
+  world.contact_w_per_m2_k *= std::exp(0.1 * normal(random));
   return world;
 }
 

@@ -31,10 +31,16 @@ struct World {
   double hold_s = 1.2;             // from the valve to the setting
   double mould_k = 333, cold_mould_k = 293;
   double contact_w_per_m2_k = 60;  // to a dry mould of wood or gypsum
+  double warmer_k = 0;             // all of the sheet, than its forming temperature
+  double thicker = 0;              // all of the sheet, than the set-up says, as a fraction
 };
 
 /// The polymer's moduli and times, the pump and the hold, each within a third of its usual value.
 World draw_world(std::mt19937_64& random);
+
+/// The same on another day. Standard deviations: 2 K of the sheet, 1 % of its thickness, 5 % of the pump's time, 2 % of
+/// the hold and a tenth of the heat that the mould takes.
+World on_another_day(World world, std::mt19937_64& random);
 
 struct FormingOptions {
   int cells = 60;           // along each side of the opening

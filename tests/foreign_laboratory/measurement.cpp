@@ -16,12 +16,6 @@ namespace {
 using Eigen::Vector2d, Eigen::Vector3d;
 using Json = nlohmann::ordered_json;
 
-/// By the transform of Box and Muller.
-double normal(std::mt19937_64& random) {
-  const double radius = std::sqrt(-2 * std::log(1 - uniform(random, 0, 1)));
-  return radius * std::cos(uniform(random, 0, 2 * std::numbers::pi));
-}
-
 struct SurfacePoint {
   Vector3d place, outward;
   double thickness_mm;
@@ -110,7 +104,9 @@ Json world_json(const World& world) {
           {"young_modulus_at_1_s_mpa", relaxation_modulus_mpa(world.polymer, 1, world.polymer.forming_temperature_k)},
           {"pump_s", world.pump_s},
           {"dead_volume_mm3", world.dead_volume_mm3},
-          {"hold_s", world.hold_s}};
+          {"hold_s", world.hold_s},
+          {"warmer_k", world.warmer_k},
+          {"thicker", world.thicker}};
 }
 
 }  // namespace
@@ -161,7 +157,11 @@ std::map<std::string, std::string> make_object(const Request& request) {
   auto of_world = stream(request.world_seed.value_or(request.seed), 0), of_faults = stream(request.seed, 1),
        of_marks = stream(request.seed, 2), of_noise = stream(request.seed, 3);
   const Machine machine;
-  const World world = draw_world(of_world);
+  World world = draw_world(of_world);
+  if (request.day_seed) {
+    auto of_day = stream(*request.day_seed, 4);
+    world = on_another_day(world, of_day);
+  }
   const Faults faults = draw_faults(request.cause, request.level, of_faults);
   const std::vector<Vector2d> marks = draw_marks(machine, request.scan.points, of_marks);
 

@@ -41,6 +41,7 @@ struct Request {
   double level = 1;
   unsigned seed = 1;
   std::optional<unsigned> world_seed;  // of the machine and its plastic, where they are those of another object
+  std::optional<unsigned> day_seed;    // formed on this day; without: as draw_world has the machine
   Scan scan;
   FormingOptions forming;
 };

@@ -130,6 +130,22 @@ TEST_CASE("Measurement.AnotherSheetOfTheSameWorldHasItsOwnMarksAndNoise") {
   CHECK(world(make_object(request)) != world(first));
 }
 
+TEST_CASE("Measurement.AnotherDayIsALittleOtherForTheSameWorld") {
+  Request request;
+  request.forming = {.cells = 8, .mass_scale = 30};
+  request.scan = {.points = 20, .noise_mm = 0, .outlier_share = 0};
+  const auto usual = make_object(request);
+  request.day_seed = 3;
+  const auto other = make_object(request);
+  const auto world = [](const auto& files) { return nlohmann::json::parse(files.at("truth.json")).at("world"); };
+  CHECK(world(usual).at("warmer_k") == 0);
+  CHECK(world(other).at("warmer_k") != 0);
+  CHECK(world(other).at("relaxation_s") == world(usual).at("relaxation_s"));
+  CHECK(usual.at("setup.json") == other.at("setup.json"));
+  CHECK(usual.at("measured.csv") != other.at("measured.csv"));
+  CHECK(other.at("measured.csv") == make_object(request).at("measured.csv"));
+}
+
 TEST_CASE("Measurement.HalfTheLevelIsHalfTheFault") {
   for (const std::string_view cause : cause_names) {
     std::mt19937_64 first(9), second(9);

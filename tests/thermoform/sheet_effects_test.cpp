@@ -118,10 +118,14 @@ TEST_CASE("SheetEffects.effects_move_points_the_way_they_should") {
     (heated.sheet.sheet_mm(i, 0) > 0 ? right : left) += heated.sheet.thickness_mm[i] - none.sheet.thickness_mm[i];
   CHECK(right > left);
   CHECK((heated.sheet.mesh.V - none.sheet.mesh.V).col(0).mean() > 0.02);
-  // A clamp that gives way leaves the sheet thicker in the mean; the rim has come in by as much.
+  // A clamp that gives way leaves the sheet thicker in the mean; its rim has come in, nowhere farther than that.
   const FormedResult slipped = with([](ThermoformOptions& o) { o.clamp_slip_mm = 3; });
-  CHECK_THAT(slipped.sheet.mesh.V.col(0).maxCoeff(), WithinAbs(57, 1e-9));
-  CHECK_THAT(slipped.sheet.mesh.V.col(1).minCoeff(), WithinAbs(-57, 1e-9));
+  double farthest_mm = 0;
+  for (Eigen::Index i = 0; i < slipped.sheet.mesh.V.rows(); ++i)
+    if (slipped.sheet.contact_s[i] == 0)
+      farthest_mm = std::max(farthest_mm, 60 - slipped.sheet.mesh.V.row(i).head<2>().cwiseAbs().maxCoeff());
+  CHECK(farthest_mm > 1.5);
+  CHECK(farthest_mm <= 3);
   CHECK(slipped.mean_thickness_mm > none.mean_thickness_mm);
   // Without a vacuum the sheet hangs over the model; with half of it, it touches less than with all.
   const FormedResult weak = with([](ThermoformOptions& o) { o.weak_vacuum = 0.95; });

@@ -36,6 +36,8 @@ const char* failure_name(Failure failure) {
     case Failure::near_zero: return "near_zero";
     case Failure::like_the_material: return "like_the_material";
     case Failure::explains_too_little: return "explains_too_little";
+    case Failure::nothing_to_explain: return "nothing_to_explain";
+    case Failure::other_material: return "other_material";
     case Failure::behind_failed: return "behind_failed";
   }
   return "";
@@ -49,6 +51,9 @@ const char* failure_sentence(Failure failure) {
       return "It would fit, but with so many causes tried, chance gives a strength like this, too.";
     case Failure::like_the_material: return "It would fit, but another material would do the same to these data.";
     case Failure::explains_too_little: return "It is the most similar cause, but explains too little of the error.";
+    case Failure::nothing_to_explain: return "It would fit, but without it hardly anything is left to explain.";
+    case Failure::other_material:
+      return "It would fit, but only with a material that is far from what was measured before.";
     case Failure::behind_failed: return "It fits worse than causes that failed a check.";
   }
   return "";
@@ -63,13 +68,14 @@ std::vector<Answer> answers_of(const std::vector<Hypothesis>& hypotheses, const 
       sums[{causes, h.unknown_structure}] += h.probability;
       continue;
     }
-    bool too_little = false;
+    bool not_listed = false;
     while (check != nullptr) {  // what is kept may have failed by itself
-      too_little |= check->failure == Failure::explains_too_little;
+      not_listed |= check->failure == Failure::explains_too_little || check->failure == Failure::other_material;
+      const bool at_nothing = causes.empty();
       causes = check->kept;
-      check = causes.empty() ? nullptr : failed_check_of(failed, causes);
+      check = at_nothing ? nullptr : failed_check_of(failed, causes);
     }
-    const double unknown = too_little ? 1 : unknown_share(hypotheses, causes);
+    const double unknown = not_listed ? 1 : unknown_share(hypotheses, causes);
     sums[{causes, true}] += unknown * h.probability;
     sums[{causes, false}] += (1 - unknown) * h.probability;
   }

@@ -13,6 +13,8 @@ enum class Failure {
   near_zero,            // its strength, with so many causes tried
   like_the_material,    // another material does the same to these data
   explains_too_little,  // of the misfit
+  nothing_to_explain,   // hardly anything is left without it, and it explains little of that
+  other_material,       // it needs one that is not what was measured before: of the explanation without causes
   behind_failed,        // less likely than several that failed
 };
 
@@ -37,8 +39,9 @@ struct Answer {
 
 /// The answers that `hypotheses` give, most probable first; they add up to 1. The probability of an explanation that
 /// failed goes to the explanations without the causes that failed, in the ratio of their own probabilities: what
-/// a failed cause seems to explain is then as likely theirs to explain as anything else is. What explains too little
-/// goes to the unknown cause. Takes the two explanations without causes to be among `hypotheses`.
+/// a failed cause seems to explain is then as likely theirs to explain as anything else is. What explains too little,
+/// or needs another material, goes to the unknown cause. Takes the two explanations without causes to be among
+/// `hypotheses`.
 std::vector<Answer> answers_of(const std::vector<Hypothesis>& hypotheses, const std::vector<FailedCheck>& failed);
 
 /// Probability that a cause is at work, alone or beside others.

@@ -16,7 +16,7 @@ namespace formwright {
 namespace {
 
 constexpr double explained_share =
-    0.6;  // of what the base model leaves unexplained (its variance) that a named cause must explain
+    0.5;  // of what the base model leaves unexplained (its variance) that a named cause must explain
 constexpr double likely = 0.5;
 constexpr double max_left =
     2;  // of the noise: with more left on held-out blocks a named cause is not all of it, or a relative of what it is
@@ -71,15 +71,8 @@ class Diagnostician {
     result_.extended = result_.base;
     find_answer();
     widen_by_model();
-    const auto before = held_out(result_.base).errors;
-    const auto after = result_.verdict.empty() ? before : checked_.errors;
-    result_.held_out = compare_distances(model_, before, after);
-    for (std::size_t m = 0; m < before.size(); ++m)
-      if (!model_.measurements()[m].is_place())
-        result_.held_out_others.push_back(compare_errors_of(model_, m, before, after));
-    result_.unexplained_after = tried_.structure_left(result_.verdict);
-    result_.structure = tried_.nearest_size(result_.unexplained_after);
-    measure_structure();
+    before_ = held_out(result_.base).errors;
+    measure_gain();
     if (result_.verdict.empty()) {
       result_.reading = result_.answers.front().unknown_cause ? Reading::unknown : Reading::none;
       return;
@@ -89,23 +82,52 @@ class Diagnostician {
     });
     result_.reading = Reading::cause;
     find_doubts();
-    if (result_.doubtful() && share_explained() < explained_share) result_.reading = Reading::unknown;
-    find_twins();
-    if (result_.reading == Reading::unknown) {
-      std::vector<int> causes = result_.verdict;
-      std::sort(causes.begin(), causes.end());
-      fail({causes, {}, Failure::explains_too_little});
+    const bool explains_too_little = result_.doubtful() && share_explained() < explained_share;
+    std::vector<int> causes = result_.verdict;
+    std::sort(causes.begin(), causes.end());
+    if (explains_too_little && result_.unexplained_before <= model_.max_misfit_left()) {
+      // Others fit worse, and explain less.
+      result_.verdict.clear();
+      result_.doubts.clear();
+      result_.extended = result_.base;
+      fail({causes, {}, Failure::nothing_to_explain});
+      if (!result_.answers.front().causes.empty()) fail_all_others();
+      measure_gain();
+      result_.reading = result_.answers.front().unknown_cause ? Reading::unknown : Reading::none;
+      return;
     }
+    if (explains_too_little) result_.reading = Reading::unknown;
+    find_twins();
+    if (explains_too_little) fail({causes, {}, Failure::explains_too_little});
   }
 
-  /// Checks the most probable answer, until the most probable one has passed or has no causes. The check of an answer
-  /// with causes is the same for all, and against the same fit without any.
+  /// What is left with the verdict.
+  void measure_gain() {
+    const std::vector<Eigen::VectorXd>& after = result_.verdict.empty() ? before_ : checked_.errors;
+    result_.held_out = compare_distances(model_, before_, after);
+    result_.held_out_others.clear();
+    for (std::size_t m = 0; m < before_.size(); ++m)
+      if (!model_.measurements()[m].is_place())
+        result_.held_out_others.push_back(compare_errors_of(model_, m, before_, after));
+    result_.unexplained_after = tried_.structure_left(result_.verdict);
+    result_.structure = tried_.nearest_size(result_.unexplained_after);
+    measure_structure();
+  }
+
+  /// Checks the most probable answer, until the most probable one has passed or is a cause that is not in the list. The
+  /// check of an answer with causes is the same for all, and against the same fit without any.
   void find_answer() {
     weigh_answers();
     const std::vector<Eigen::VectorXd> without = predicted(tried_.refit_of({}).fit, {});
-    while (!result_.answers.front().causes.empty()) {
+    std::size_t failed_causes = 0;
+    for (;;) {
       const Answer top = result_.answers.front();
-      if (result_.failed.size() >= max_failed) {
+      if (top.causes.empty()) {
+        if (top.unknown_cause || !is_other_material(tried_.refit_of({}).fit.u)) return;
+        fail({{}, {}, Failure::other_material});
+        continue;
+      }
+      if (failed_causes++ >= max_failed) {
         fail_all_others();
         continue;
       }
@@ -189,20 +211,25 @@ class Diagnostician {
 
   /// Relatives of what is wrong leave something, or do so little that the fit's own error could be it.
   void find_doubts() {
-    if (result_.unexplained_after > max_structure * model_.known_misfit()) doubt(stays_unexplained);
+    if (result_.unexplained_after > model_.max_misfit_left()) doubt(stays_unexplained);
     if (result_.held_out.after.mean > max_left * result_.noise_floor)
       doubt("On held-out data, the error is still more than twice the noise.");
-    for (const int p : model_.base_parameters()) {
-      const ModelParameter& parameter = model_.parameters()[static_cast<std::size_t>(p)];
-      if (parameter.was_measured && std::abs(result_.extended.u[p]) > surprising * parameter.prior_sd)
-        doubt(other_material);
-    }
+    if (is_other_material(result_.extended.u)) doubt(other_material);
     for (const int cause : result_.verdict) {
       const CauseFinding& finding = finding_of(cause);
       if (finding.probability < likely) doubt(nearly_as_likely);
       if (std::abs(finding.strength) < plain_strength * 0.5 * (finding.high - finding.low))
         doubt("Its strength is hardly distinguishable from zero.");
     }
+  }
+
+  /// Far from one that was measured before.
+  bool is_other_material(const Eigen::VectorXd& u) const {
+    const std::vector<int> base = model_.base_parameters();
+    return std::any_of(base.begin(), base.end(), [&](int p) {
+      const ModelParameter& parameter = model_.parameters()[static_cast<std::size_t>(p)];
+      return parameter.was_measured && std::abs(u[p]) > surprising * parameter.prior_sd;
+    });
   }
 
   /// Of what was unexplained (its variance): by the structure that is left, or, where that is beyond what is
@@ -342,6 +369,8 @@ class Diagnostician {
   }
 
   void measure_structure() {
+    result_.structure_before.clear();
+    result_.structure_after.clear();
     const Predictions left = residuals(model_, result_.base.predictions),
                       left_after = residuals(model_, result_.extended.predictions);
     double sum = 0, count = 0;
@@ -364,7 +393,8 @@ class Diagnostician {
   Context& context_;
   Explanations& tried_;
   Diagnosis result_;
-  HeldOut checked_;  // of result_.extended
+  HeldOut checked_;                      // of result_.extended
+  std::vector<Eigen::VectorXd> before_;  // errors on held-out blocks without causes
 };
 
 }  // namespace

@@ -90,6 +90,10 @@ std::string verdict_sentence(const DiagnosisReport& report) {
     std::string text = std::string("The object differs from the ") + (beside ? "good part" : "simulation") +
                        ", and none of the known causes explains it.";
     if (!d.verdict.empty()) text += " Nearest to it: " + label(d.verdict.front()) + ".";
+    if (std::any_of(d.failed.begin(), d.failed.end(),
+                    [](const FailedCheck& f) { return f.failure == Failure::other_material; }))
+      text +=
+          " Another material would: the sheet was stiffer or softer, of another plastic, or all of it hotter or colder.";
     return text;
   }
   std::string text = label(d.verdict.front()) + ", " + percent(probability(d.verdict.front()));
@@ -217,6 +221,7 @@ Json diagnosis_json(const DiagnosisReport& report) {
     json["parameters"].push_back({{"name", parameter.name},
                                   {"label", parameter.label},
                                   {"unit", parameter.unit},
+                                  {"nominal", parameter.nominal},
                                   {"calibrated", parameter.value(d.base.u[p])},
                                   {"extended", parameter.value(d.extended.u[p])}});
   }

@@ -9,10 +9,10 @@
 namespace formwright {
 namespace {
 
-/// Of log evidence: linear models, and fits that have made two steps, are wrong by less. About zero, linear models of a
-/// cause of one sign say little.
-constexpr double linear_error = 150, out_of_linear_reach = 300;
-constexpr int judged_after = 2;  // steps
+/// Times ForwardModel::linear_error(): about zero, linear models of a cause of one sign say little.
+constexpr double one_sided_error = 2;
+constexpr int judged_after = 2;                    // steps
+constexpr double usual_multiples[] = {0.5, 1, 2};  // of a usual strength, to start from
 constexpr FitOptions polishing_fit{8, 0.01, true}, renewing_fit{6, 0.01, true};
 
 }  // namespace
@@ -34,7 +34,7 @@ std::vector<FitInProgress> Explanations::fitted(std::vector<FitProblem> problems
     for (const Refit& r : refits_) lowest = std::min(lowest, r.fit.value);
     for (const FitInProgress& f : fits)
       if (f.has_answer()) lowest = std::min(lowest, f.fit().value);
-    return fit.promised() > lowest + linear_error;
+    return fit.promised() > lowest + model_.linear_error();
   });
   return fits;
 }
@@ -66,34 +66,52 @@ bool Explanations::cannot_lead(const std::vector<int>& causes) const {
   double fitted = -std::numeric_limits<double>::infinity();
   for (const Hypothesis& h : hypotheses_) fitted = std::max(fitted, h.log_evidence);
   const double leading = std::min(screened_.front().log_evidence, fitted);
-  return linear < leading - (has_one_sign(causes) ? out_of_linear_reach : linear_error);
+  return linear < leading - (has_one_sign(causes) ? one_sided_error : 1) * model_.linear_error();
 }
 
-Eigen::VectorXd Explanations::at_usual_strength(const std::vector<int>& causes) const {
-  Eigen::VectorXd usual = model_.nominal();
-  for (const int cause : causes)
-    for (const int p : model_.causes()[static_cast<std::size_t>(cause)].parameters)
-      usual[p] = model_.parameters()[static_cast<std::size_t>(p)].prior_sd;
-  return within_ranges(model_, usual);
+std::vector<Eigen::VectorXd> Explanations::at_usual_strengths_of(const std::vector<int>& causes) const {
+  std::vector<Eigen::VectorXd> strengths;
+  for (const double multiple : usual_multiples) {
+    Eigen::VectorXd u = model_.nominal();
+    for (const int cause : causes)
+      for (const int p : model_.causes()[static_cast<std::size_t>(cause)].parameters)
+        u[p] = multiple * model_.parameters()[static_cast<std::size_t>(p)].prior_sd;
+    strengths.push_back(within_ranges(model_, u));
+  }
+  return strengths;
 }
 
 std::optional<FitProblem> Explanations::problem_from_nominal(const std::vector<int>& causes) {
   const std::vector<int> free = model_.base_and(causes);
   std::vector<Sensitivities> known = sensitivities_of(free, nominal_sensitivities_, columns_);
   if (has_one_sign(causes)) {
-    // At zero it has a derivative on one side only, and that says little: start at its usual strength, with the secant
-    // from none to there.
-    const Eigen::VectorXd usual = at_usual_strength(causes);
+    // At zero it has a derivative on one side only, and that says little: start at the best of some strengths, with the
+    // secant from none to there.
+    FitProblem result = problem(causes, at_usual_strengths_of(causes), {}, renewing_fit);
+    Eigen::VectorXd start = result.starts.front();
+    std::optional<Predictions> there;
+    double lowest = std::numeric_limits<double>::infinity();
+    const auto made = bag_.run(result.starts, context_, fitting_stage);
+    for (std::size_t i = 0; i < made.size(); ++i) {
+      if (!made[i]) continue;
+      const double value = result.objective->value(residuals(model_, *made[i]), result.starts[i]);
+      if (!(value < lowest)) continue;
+      lowest = value;
+      start = result.starts[i];
+      there = made[i];
+    }
     const std::size_t own = free.size() - model_.base_parameters().size();
-    const auto there = bag_.run(usual, context_, fitting_stage);
-    if (own > 1 || !there) known.clear();
-    for (std::size_t object = 0; object < known.size(); ++object)
-      known[object].back() = ((*there)[object] - at_nominal_[object]) / usual[free.back()];
-    return problem(causes, {usual, within_ranges(model_, usual + 0.5 * base_.u)}, std::move(known), renewing_fit);
+    if (own == 1 && there) {
+      for (std::size_t object = 0; object < known.size(); ++object)
+        known[object].back() = ((*there)[object] - at_nominal_[object]) / start[free.back()];
+      result.known = std::move(known);
+    }
+    result.starts = {start, within_ranges(model_, start + 0.5 * base_.u)};
+    return result;
   }
   Hypothesis h = screened(causes, false);
   weigh(model_, about_nominal_, columns_, model_.nominal(), h);
-  if (h.log_evidence < screened_.front().log_evidence - out_of_linear_reach) return {};
+  if (h.log_evidence < screened_.front().log_evidence - one_sided_error * model_.linear_error()) return {};
   return problem(causes, {model_.nominal(), towards(model_, free, model_.nominal(), h.u)}, std::move(known), quick_fit);
 }
 
@@ -101,7 +119,8 @@ void Explanations::refit_singles(const std::vector<std::vector<int>>& explanatio
   if (explanations.empty()) return;
   std::vector<Eigen::VectorXd> usual;
   for (const std::vector<int>& causes : explanations)
-    if (has_one_sign(causes)) usual.push_back(at_usual_strength(causes));
+    if (has_one_sign(causes))
+      for (Eigen::VectorXd& u : at_usual_strengths_of(causes)) usual.push_back(std::move(u));
   if (!usual.empty()) bag_.run(usual, context_, fitting_stage);
   std::vector<FitProblem> problems;
   for (const std::vector<int>& causes : explanations) problems.push_back(problem_from_base(causes, nullptr));

@@ -11,8 +11,6 @@
 namespace formwright {
 
 inline constexpr const char* fitting_stage = "Fitting the causes";
-/// Of the known misfit: right causes leave none, or the next smaller size of those that are considered.
-inline constexpr double max_structure = 0.6;
 inline constexpr double min_movement = 0.5;  // of the known misfit, that a cause must make
 inline constexpr double out_of_reach = 60;   // log evidence that polishing, or a finer simulation, does not make up for
 
@@ -103,8 +101,8 @@ class Explanations {
   /// None or one cause each, from both materials. Each is weighed.
   void refit_singles(const std::vector<std::vector<int>>& explanations);
   void refit_pairs(const std::vector<PairGuess>& guesses);
-  /// The set-up's own parameters, with these causes as strong as they usually are.
-  Eigen::VectorXd at_usual_strength(const std::vector<int>& causes) const;
+  /// The set-up's own parameters, with these causes about as strong as they usually are.
+  std::vector<Eigen::VectorXd> at_usual_strengths_of(const std::vector<int>& causes) const;
   /// One of their parameters is never negative.
   bool has_one_sign(const std::vector<int>& causes) const;
   /// Behind the linearised leader and the best fit so far by more than a linear model is wrong: not worth a fit, except

@@ -23,7 +23,7 @@ const Hypothesis& plain_none(const std::vector<Hypothesis>& hypotheses) {
 
 bool Explanations::decided() const {
   const Hypothesis& best = hypotheses_.front();
-  if (best.unknown_structure || structure_left(best.causes) > max_structure * model_.known_misfit()) return false;
+  if (best.unknown_structure || structure_left(best.causes) > model_.max_misfit_left()) return false;
   // Where nothing is left to explain, no finer sheet finds a cause of it.
   if (best.causes.empty()) return true;
   return std::all_of(hypotheses_.begin(), hypotheses_.end(), [&](const Hypothesis& h) {

@@ -21,6 +21,8 @@ class AnchoredModel : public ForwardModel {
   const std::vector<Cause>& causes() const override { return cheap_.causes(); }
   const std::vector<Measurement>& measurements() const override { return cheap_.measurements(); }
   double known_misfit() const override { return cheap_.known_misfit(); }
+  double max_misfit_left() const override { return cheap_.max_misfit_left(); }
+  double linear_error() const override { return cheap_.linear_error(); }
   bool claim(int object, const Eigen::VectorXd& u, const Context& context) const override {
     return cheap_.claim(object, u, context);
   }

@@ -128,6 +128,10 @@ class ForwardModel {
   /// Size of structured misfit (in the measurement's unit) that the model is known to have without any fault of the
   /// machine.
   virtual double known_misfit() const = 0;
+  /// The largest structured misfit that the right causes leave: none, or the next smaller size of those considered.
+  virtual double max_misfit_left() const { return 0.6 * known_misfit(); }
+  /// Log evidence by which linear models, and fits that have made two steps, are wrong at most.
+  virtual double linear_error() const { return 150; }
 
   std::vector<int> parameters_with(ParameterRole role) const;
   /// `parameter` belongs to one of `causes`.

@@ -81,8 +81,9 @@ struct SheetEffects : PlacementOptions {
                 "Fraction of the vacuum that leaks away. 0: no leak; 0.3 leaves 70 %.")
           .group(group_title)
           .advanced(),
-      parameter("clamp_slip_mm", &SheetEffects::clamp_slip_mm, "Sheet slips in the clamp", unit::mm, 0, 20,
-                "How far the sheet's rim is pulled in from under the clamp while the model rises. 0: the clamp holds.")
+      parameter(
+          "clamp_slip_mm", &SheetEffects::clamp_slip_mm, "Sheet slips in the clamp", unit::mm, 0, 20,
+          "How far the sheet's rim is pulled in from under the clamp while the model rises, where it is pulled hardest all the time; elsewhere less. 0: the clamp holds.")
           .group(group_title)
           .slider(0, 5)
           .advanced(),

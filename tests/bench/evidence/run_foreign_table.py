@@ -3,9 +3,10 @@
 """Forms objects in the foreign laboratory and diagnoses them, one line of JSON each; continues where it was stopped.
 
 run_foreign_table.py FOREIGN_LABORATORY FORMWRIGHT RESULTS.jsonl [--seeds N] [--noise MM] [--points N] [--folder DIR] [--jobs N] [--pairs] [--triangles N]
-                     [--only CAUSE] [--mould NAME] [--known-machine] [--good-part]
+                     [--level 1|0.5|0.25] [--only CAUSE] [--mould NAME] [--known-machine] [--good-part]
 
 A round is one clean sheet of each mould and every cause once, strong; its seed decides which mould a cause is tried on, before anything is computed.
+With another level the same rounds are tried with half or a quarter of every fault, without the clean sheets.
 Cases that RESULTS has are not done again, nor are failures hidden: they are lines with "error"."""
 import argparse
 import concurrent.futures
@@ -24,18 +25,18 @@ def names(program):
     return [name for kind, name in words if kind == "mould"], [name for kind, name in words if kind == "cause"]
 
 
-def cases(moulds, causes, seeds):
+def cases(moulds, causes, seeds, level):
     """(seed, mould, cause, level): clean sheets and causes in turn, so that a table that was stopped early has both."""
     for turn in range(seeds):
         first = 100 * (turn + 1)
-        clean = [(first + k, mould, "none", 1.0) for k, mould in enumerate(moulds)]
+        clean = [(first + k, mould, "none", 1.0) for k, mould in enumerate(moulds)] if level == 1 else []
         # Moulds follow each other in another order in every round, so that a cause meets each of them.
         faulty = []
         for k, cause in enumerate(causes):
             mould = moulds[(k + turn * 5) % len(moulds)]
             if cause == "mould_rotation" and mould in ("dome", "cone"):  # bodies of revolution do not show it
                 mould = "box"
-            faulty.append((first + 20 + k, mould, cause, 1.0))
+            faulty.append((first + 20 + k, mould, cause, level))
         while clean or faulty:
             yield from faulty[:3]
             yield from clean[:1]
@@ -69,16 +70,16 @@ def machine_in_order(a, seed, mould, folder):
 
 
 def good_part(a, seed, mould, folder):
-    """One sheet without fault of the same machine and plastic over the same mould, with marks and noise of its own."""
-    good = folder / f"{mould}_good_{seed}"
-    form(a, mould, "none", 1, 700_000 + seed, good, "--world-seed", str(seed))
+    """One sheet without fault of the same machine and plastic over the same mould, of another day, with marks and noise of its own."""
+    good = folder / f"{mould}_good_of_another_day_{seed}"
+    form(a, mould, "none", 1, 700_000 + seed, good, "--world-seed", str(seed), "--day-seed", str(700_000 + seed))
     return ["--good", str(good)]
 
 
 def diagnosed(a, seed, mould, cause, level, folder):
     """One line: the hidden truth, what the diagnosis said and how long both took."""
     line = {"seed": seed, "mould": mould, "cause": cause, "level": level, "noise_mm": a.noise, "points": a.points, "pairs": a.pairs, "triangles": a.triangles, "known_machine": a.known_machine, "good_part": a.good_part}
-    item = folder / f"{mould}_{cause}_{seed}"
+    item = folder / (f"{mould}_{cause}_{seed}" + (f"_{level:g}" if level != 1 else ""))
     try:
         start = time.monotonic()
         form(a, mould, cause, level, seed, item)
@@ -123,13 +124,14 @@ def main():
     parser.add_argument("--pairs", action="store_true", help="also looks for two causes at once, which takes twice as long")
     parser.add_argument("--known-machine", action="store_true", help="diagnoses with a profile from when the machine was in order")
     parser.add_argument("--good-part", action="store_true", help="diagnoses beside a sheet without fault over the same mould")
+    parser.add_argument("--level", type=float, default=1, help="of the faults: 1 strong, 0.5 medium, 0.25 weak")
     parser.add_argument("--only", help="this cause alone, or none")
     parser.add_argument("--mould", help="this mould alone")
     a = parser.parse_args()
     moulds, causes = names(a.laboratory)
     lines = [json.loads(line) for line in a.results.read_text().splitlines()] if a.results.exists() else []
     done = {(line["seed"], line["mould"], line["cause"], line["level"], line["noise_mm"], line["points"], line["pairs"], line.get("triangles", 5000), line.get("known_machine", False), line.get("good_part", False)) for line in lines if "error" not in line}
-    todo = [case for case in cases(moulds, causes, a.seeds)
+    todo = [case for case in cases(moulds, causes, a.seeds, a.level)
             if (*case, a.noise, a.points, a.pairs, a.triangles, a.known_machine, a.good_part) not in done and a.only in (None, case[2]) and a.mould in (None, case[1])]
     print(f"{len(done)} done, {len(todo)} to do", flush=True)
     lock = threading.Lock()

@@ -69,7 +69,7 @@ def main():
         with open(name) as file:
             for line in map(json.loads, filter(str.strip, file)):
                 latest[line["seed"], line["mould"], line["cause"], line["level"], line["noise_mm"], line["points"], line["pairs"], line.get("known_machine", False), line.get("good_part", False)] = line
-    everything = sorted(latest.values(), key=lambda c: (c["cause"], c["mould"], c["seed"]))
+    everything = sorted(latest.values(), key=lambda c: (c["cause"], c["mould"], c["seed"], -c["level"]))
     cases = [c for c in everything if not c.get("known_machine") and not c.get("good_part")]
     beside = [c for c in everything if c.get("good_part")]
     known = [c for c in everything if c.get("known_machine")]
@@ -96,6 +96,7 @@ Sheets that `tests/foreign_laboratory` formed, with a simulation of another kind
     table("By cause", [(cause, [c for c in strong if c["cause"] == cause]) for cause in sorted({c["cause"] for c in strong} - {"none"})
                        if all(c.get("in_the_list", True) for c in strong if c["cause"] == cause)])
     tell_of_causes_in_no_list(strong)
+    weaker_levels(cases)
     print_baselines("Baselines", strong)
     good = [c for c in cases if "error" not in c]
     if good:
@@ -107,10 +108,13 @@ Sheets that `tests/foreign_laboratory` formed, with a simulation of another kind
               f"{statistics.median(c['seconds_diagnosing'] for c in good):.0f} s to diagnose. Failed: {len(cases) - len(good)}.")
     list_answers("Every answer", cases)
     if beside:
-        table("Beside a good part", by_mould([c for c in beside if c["level"] == 1]))
-        tell_of_causes_in_no_list(beside)
-        print_baselines("Baselines beside a good part", beside)
-        print("\nA sheet without fault over the same mould, of the same machine and plastic, with marks and noise of its own, was given as a good part (`--good-part`).")
+        strong = [c for c in beside if c["level"] == 1]
+        table("Beside a good part", by_mould(strong))
+        print("\nA sheet without fault over the same mould, of the same machine and plastic, was given as a good part (`--good-part`). It is of another day: another temperature, thickness and "
+              "vacuum, by what machines in order differ (`on_another_day` in `forming.h`), with marks and noise of its own.")
+        tell_of_causes_in_no_list(strong)
+        weaker_levels(beside)
+        print_baselines("Baselines beside a good part", strong)
         list_answers("Every answer beside a good part", beside)
     if known:
         table("With a profile from when the machine was in order", by_mould([c for c in known if c["level"] == 1]))
@@ -143,6 +147,20 @@ def print_baselines(title, cases):
     better = [c["verdict_gain"] for c in faulty if named(c) and (c["verdict_gain"] or 0) > 0]
     print(f"\n*A discrepancy field and no causes*: on the blocks that were left out, the named causes and the field together predict better than the field alone in {share(better, faulty)} of all cases. "
           f"Their error is {100 * statistics.median(better):.0f} % lower there (median)." if better else "")
+
+
+def weaker_levels(cases):
+    """The same faults at half or a quarter of their size; clean sheets are tried once, with the strong ones."""
+    for level, word in ((0.5, "medium"), (0.25, "weak")):
+        of = [c for c in cases if c["level"] == level and c.get("in_the_list", True)]
+        if not of:
+            continue
+        wrong = [c for c in of if named(c) and not right(c)]
+        sure = [c for c in of if right(c) and not c["doubtful"]]
+        surely_wrong = [c for c in wrong if not c["doubtful"]]
+        print(f"\nOf the same faults, {word} ({level:g} times as large), {share([c for c in of if right(c)], of)} are named first, {share(sure, of)} named and not in doubt; "
+              f"for {share(wrong, of)} another cause is named, not in doubt for {share(surely_wrong, of)}.")
+        tell_of_causes_in_no_list([c for c in cases if c["level"] == level])
 
 
 def by_mould(cases):

@@ -91,7 +91,7 @@ std::string thermoform_cause_in_words(std::string_view cause, std::span<const do
            with_digits(1 + chilled_stiffness * v, 2) + " times as stiff.";
   if (cause == "weak_vacuum") return "About " + percent(v) + " of the vacuum did not reach the sheet.";
   if (cause == "clamp_slip")
-    return "The sheet's rim was drawn in by about " + millimetres(v) + " from under the clamp.";
+    return "The sheet's rim was drawn in from under the clamp by up to about " + millimetres(v) + ".";
   if (cause == "mould_shift") return "The mould stood about " + way(values) + " of its place.";
   if (cause == "mould_rotation")
     return "The mould stood turned by about " + degrees(v) + ", " + (v > 0 ? "counter-clockwise" : "clockwise") +

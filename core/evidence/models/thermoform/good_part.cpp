@@ -28,7 +28,11 @@ bool same_mould(const FormedObject& a, const FormedObject& b) {
 
 MachineInOrder machine_in_order(const std::vector<FormedObject>& good_parts, const ThermoformModelOptions& options,
                                 Context& context) {
-  const ThermoformModel usual(good_parts, options);
+  // Nothing was wrong with these parts, so no cause may stand in for what the simulation leaves out.
+  ThermoformModelOptions in_order = options;
+  const ThermoformModel with_causes(good_parts, options);
+  for (const Cause& cause : with_causes.causes()) in_order.without.push_back(cause.name);
+  const ThermoformModel usual(good_parts, std::move(in_order));
   MachineInOrder result;
   {
     const auto span = context.span(0, 0.8, "Choosing the simulation");

@@ -13,6 +13,7 @@ namespace {
 
 /// What later readers of a stored simulation must find unchanged; raised when the simulation computes something else.
 constexpr const char* simulation_version = "thermoform-2:";
+constexpr const char* clamp_version = "clamp-4:";  // of simulations in which the clamp slips
 /// Before the sentence of a simulation without an answer.
 constexpr std::string_view no_answer = "no answer:";
 
@@ -64,7 +65,8 @@ TriangleMesh unpacked_mould(ByteView bytes) {
 }  // namespace
 
 std::string SheetSimulation::key() const {
-  return sha256_hex(as_bytes(simulation_version + mould_name + ":" + std::to_string(base_plate_end_z_mm) + ":" +
+  return sha256_hex(as_bytes(std::string(simulation_version) + (options.clamp_slip_mm > 0 ? clamp_version : "") +
+                             mould_name + ":" + std::to_string(base_plate_end_z_mm) + ":" +
                              write_parameters(options).dump()));
 }
 

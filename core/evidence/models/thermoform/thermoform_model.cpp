@@ -47,6 +47,18 @@ Eigen::MatrixX2d in_opening(const std::vector<Reading>& readings, const Thermofo
   return place;
 }
 
+/// Of a material's prior_sd: how far it may be from a profile's; and from that of a good part, which is the same
+/// plastic: 9 % of its stiffness and a fifth of its creep rate, what an oven does that repeats to two kelvins
+/// (docs/evidence.md, "Beside a good part").
+constexpr double known_share = 0.3, same_material_share = 0.15;
+constexpr double max_deviations = 4;  // from a good part's material
+
+void keep_near_nominal(ModelParameter& p) {
+  p.was_measured = true;
+  p.low = std::max(p.low, p.value(-max_deviations * p.prior_sd));
+  p.high = std::min(p.high, p.value(max_deviations * p.prior_sd));
+}
+
 }  // namespace
 
 ThermoformModel::ThermoformModel(std::vector<FormedObject> objects, ThermoformModelOptions options)
@@ -57,11 +69,10 @@ ThermoformModel::ThermoformModel(std::vector<FormedObject> objects, ThermoformMo
   declare_thermoform_parameters(nominal, options_, parameters_, causes_);
   // What a profile says of the material was measured, on a machine that was well: far more than a guess, and the only
   // thing that tells a weak vacuum from a stiff sheet.
-  constexpr double known_share = 0.3;
   for (ModelParameter& p : parameters_)
     if (p.role == ParameterRole::base && options_.profile.parameters.contains(p.name)) {
-      p.prior_sd *= known_share;
-      p.was_measured = options_.good_parts != nullptr;
+      p.prior_sd *= options_.good_parts ? same_material_share : known_share;
+      if (options_.good_parts) keep_near_nominal(p);
     }
   for (const FormedObject& object : objects_) add_places(object);
   for (int object = 0; object < static_cast<int>(objects_.size()); ++object) {
@@ -86,8 +97,7 @@ ThermoformModel::ThermoformModel(std::vector<FormedObject> objects, ThermoformMo
 }
 
 double ThermoformModel::thickness_scale(const FormedObject& object, double misfit_share) const {
-  return known_misfit() /
-         (misfit_share * read_parameters<ThermoformOptions>(object.setup.parameters).sheet_thickness_mm);
+  return misfit_mm / (misfit_share * read_parameters<ThermoformOptions>(object.setup.parameters).sheet_thickness_mm);
 }
 
 void ThermoformModel::add_places(const FormedObject& object) {

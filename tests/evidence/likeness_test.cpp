@@ -4,6 +4,9 @@
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/matchers/catch_matchers_floating_point.hpp>
 
+#include <cmath>
+
+#include "evidence/fit/hypotheses.h"
 #include "evidence/toy_model.h"
 
 namespace formwright {
@@ -40,6 +43,22 @@ TEST_CASE("Likeness.IsTheCosineBesideWhatTheBaseParametersCanDo") {
 TEST_CASE("Likeness.OfNothingIsNone") {
   const evidence_test::ToyModel model(10);
   for (const double found : likenesses(model, gram_of(Eigen::Matrix<double, 8, 1>::Zero()))) CHECK(found == 0);
+}
+
+TEST_CASE("VisibleStrength.WhereTheMaterialWasMeasuredItIsThatOfItsOwnPlace") {
+  // What the parameters do at two places, one set after the other: the bump does something else at each.
+  Eigen::Matrix<double, 5, 13> columns = Eigen::Matrix<double, 5, 13>::Zero();
+  columns(0, 1) = columns(0, 7) = 3;    // height
+  columns(1, 2) = columns(1, 8) = 0.5;  // tilt
+  columns(2, 3) = 2;                    // bump at the first place
+  columns(3, 9) = 2;                    // at the second
+  const GramByStructure gram{{columns.transpose() * columns}, {0}};
+  evidence_test::ToyModel model(10);
+  constexpr int bump = 0;
+  const auto visible = [&] { return min_visible_strength(model, gram, 0, {0, 1, 2, 3, 4, 5}, bump); };
+  CHECK(std::isinf(visible()));
+  model.set_measured_height(0.05);
+  CHECK_THAT(visible(), WithinAbs(4 / 2.0, 1e-9));  // four standard deviations
 }
 
 }  // namespace

@@ -238,16 +238,19 @@ double min_visible_strength(const ForwardModel& model, const GramByStructure& gr
                     1 + place_of_cols * k + cols[static_cast<std::size_t>(j)]);
     return M;
   };
-  std::array<Eigen::MatrixXd, 2> imitated;
-  for (Eigen::Index place : {0, 1}) {
+  // Where the material was measured, the calibrated one may be far from it, and it is the measured one that counts.
+  const bool measured = std::any_of(model.parameters().begin(), model.parameters().end(),
+                                    [](const ModelParameter& p) { return p.was_measured; });
+  const Eigen::Index first = measured ? 1 : 0;
+  const auto imitated = [&](Eigen::Index place) -> Eigen::MatrixXd {
     Eigen::MatrixXd A = block(others, place, others, place);
     A.diagonal() += precision;
-    imitated[static_cast<std::size_t>(place)] = A.llt().solve(block(others, place, own, place));
-  }
-  const auto& [X, Y] = imitated;
-  const Eigen::MatrixXd shared = block(own, 0, own, 1) - block(own, 0, others, 1) * Y -
-                                 X.transpose() * block(others, 0, own, 1) +
-                                 X.transpose() * (block(others, 0, others, 1) * Y + precision.asDiagonal() * Y);
+    return A.llt().solve(block(others, place, own, place));
+  };
+  const Eigen::MatrixXd X = imitated(first), Y = imitated(1);
+  const Eigen::MatrixXd shared = block(own, first, own, 1) - block(own, first, others, 1) * Y -
+                                 X.transpose() * block(others, first, own, 1) +
+                                 X.transpose() * (block(others, first, others, 1) * Y + precision.asDiagonal() * Y);
   const double weakest =
       Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(0.5 * (shared + shared.transpose())).eigenvalues().minCoeff();
   if (!(weakest > 0)) return std::numeric_limits<double>::infinity();

@@ -46,7 +46,8 @@ double similarity(const ForwardModel& model, const GramByStructure& gram, std::s
 /// How strong a cause must be, in its worst direction, for these data to show it beside all that base parameters and
 /// discrepancies can imitate; infinite where they imitate it wholly. In the cause's coordinates. `gram`: with the
 /// sensitivities to `columns` at two places, one set after the other. What contact and the mesh do to them is different
-/// at each: only what both have in common counts.
+/// at each: only what both have in common counts. Where a base parameter was measured (ModelParameter::was_measured),
+/// the second place alone counts, which is that of the measured values.
 double min_visible_strength(const ForwardModel& model, const GramByStructure& gram, std::size_t structure,
                             const std::vector<int>& columns, int cause);
 

@@ -219,6 +219,29 @@ TEST_CASE("Diagnosis.InDoubtItDoesNotSeparateCausesThatAreAlike") {
   }
 }
 
+TEST_CASE("Diagnosis.WhatIsUnknownIsComparedWithTheCauseThatIsMostLikeIt") {
+  const ToyModel model(10);
+  Diagnosis d;
+  d.reading = Reading::unknown;
+  for (int cause = 0; cause < 3; ++cause) {
+    CauseFinding finding;
+    finding.cause = cause;
+    d.causes.push_back(finding);
+  }
+  const DiagnosisReport report{model, d, {}, std::nullopt, {}, {}};
+  const std::string plain = "The object differs from the simulation, and none of the known causes explains it.";
+  d.causes[1].likeness = 0.45;
+  CHECK(verdict_sentence(report) == plain);
+  d.causes[2].likeness = 0.8;
+  CHECK(verdict_sentence(report) == plain + " Most like it, but not enough: Drift.");
+  d.failed.push_back({{}, {}, Failure::other_material});
+  CHECK(
+      verdict_sentence(report) ==
+      plain +
+          " Most like it, but not enough: Drift. Another material would explain it: the sheet was stiffer or softer, of another "
+          "plastic, or all of it hotter or colder.");
+}
+
 TEST_CASE("Diagnosis.ReportsAreWholeAndHoldNoStrangeNumbers") {
   ToyModel model(300);
   Eigen::VectorXd truth = model.nominal();

@@ -7,6 +7,7 @@
 namespace formwright {
 namespace {
 
+constexpr double min_similar = 0.5;     // CauseFinding::likeness of a cause that `unknown` is compared with
 constexpr double min_reported = 0.001;  // of a probability: whatever is less likely is one
 
 /// Probabilities that round to certainty are not reported as certain.
@@ -89,11 +90,16 @@ std::string verdict_sentence(const DiagnosisReport& report) {
   if (d.reading == Reading::unknown) {
     std::string text = std::string("The object differs from the ") + (beside ? "good part" : "simulation") +
                        ", and none of the known causes explains it.";
+    const auto similar =
+        std::max_element(d.causes.begin(), d.causes.end(),
+                         [](const CauseFinding& a, const CauseFinding& b) { return a.likeness < b.likeness; });
     if (!d.verdict.empty()) text += " Nearest to it: " + label(d.verdict.front()) + ".";
+    else if (similar != d.causes.end() && similar->likeness >= min_similar)
+      text += " Most like it, but not enough: " + label(similar->cause) + ".";
     if (std::any_of(d.failed.begin(), d.failed.end(),
                     [](const FailedCheck& f) { return f.failure == Failure::other_material; }))
       text +=
-          " Another material would: the sheet was stiffer or softer, of another plastic, or all of it hotter or colder.";
+          " Another material would explain it: the sheet was stiffer or softer, of another plastic, or all of it hotter or colder.";
     return text;
   }
   std::string text = label(d.verdict.front()) + ", " + percent(probability(d.verdict.front()));

@@ -104,8 +104,12 @@ Sheets that `tests/foreign_laboratory` formed, with a simulation of another kind
         if clean:
             print(f"\nClean sheets: mean distance of {statistics.median(clean):.2f} mm (median) between sheet and calibrated simulation on held-out blocks, noise alone would give "
                   f"{statistics.median(c['noise_floor_mm'] for c in good if c['cause'] == 'none'):.2f} mm.")
-        print(f"\nMedian wall time of a case, with whatever else the machine did: {statistics.median(c['seconds_forming'] for c in good if c['seconds_forming']):.0f} s to form, "
-              f"{statistics.median(c['seconds_diagnosing'] for c in good):.0f} s to diagnose. Failed: {len(cases) - len(good)}.")
+        # Of an object that was kept, simulations may be, too: its times say nothing.
+        timed = [c for c in good if c["seconds_forming"] >= 1]
+        if timed:
+            print(f"\nMedian wall time of a case, with whatever else the machine did: {statistics.median(c['seconds_forming'] for c in timed):.0f} s to form, "
+                  f"{statistics.median(c['seconds_diagnosing'] for c in timed):.0f} s to diagnose.")
+        print(f"\nFailed: {len(cases) - len(good)}.")
     list_answers("Every answer", cases)
     if beside:
         strong = [c for c in beside if c["level"] == 1]

@@ -21,16 +21,6 @@ using Catch::Matchers::WithinULP;
 
 using namespace thermoform_test;
 
-ThermoformOptions fine_stepping_machine(int triangles) {
-  ThermoformOptions o;
-  o.sheet_x_mm = o.sheet_y_mm = 140;
-  o.clamp_opening_x_mm = o.clamp_opening_y_mm = 120;
-  o.platform_travel_mm = 80;
-  o.triangles = triangles;
-  o.step_mm = 1;
-  return o;
-}
-
 double mean_movement(const FormedResult& a, const FormedResult& b) {
   return (a.sheet.mesh.V - b.sheet.mesh.V).rowwise().norm().mean();
 }

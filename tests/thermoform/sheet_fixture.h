@@ -9,6 +9,17 @@
 
 namespace formwright::thermoform_test {
 
+/// A small square machine; no vertex moves more than 1 mm in a step.
+inline ThermoformOptions fine_stepping_machine(int triangles) {
+  ThermoformOptions o;
+  o.sheet_x_mm = o.sheet_y_mm = 140;
+  o.clamp_opening_x_mm = o.clamp_opening_y_mm = 120;
+  o.platform_travel_mm = 80;
+  o.triangles = triangles;
+  o.step_mm = 1;
+  return o;
+}
+
 /// The sheet stretched and bulged, every vertex shaken a little: a state with all kinds of strain in it.
 inline Positions shaken(const SheetMesh& sheet, double amplitude_mm, unsigned seed) {
   std::mt19937 random(seed);

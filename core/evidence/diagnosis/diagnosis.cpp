@@ -92,6 +92,7 @@ class Diagnostician {
       result_.extended = result_.base;
       fail({causes, {}, Failure::nothing_to_explain});
       if (!result_.answers.front().causes.empty()) fail_all_others();
+      check_material();
       measure_gain();
       result_.reading = result_.answers.front().unknown_cause ? Reading::unknown : Reading::none;
       return;
@@ -114,6 +115,12 @@ class Diagnostician {
     measure_structure();
   }
 
+  /// That nothing is wrong is no answer where it needs another material.
+  void check_material() {
+    if (!result_.answers.front().unknown_cause && is_other_material(tried_.refit_of({}).fit.u))
+      fail({{}, {}, Failure::other_material});
+  }
+
   /// Checks the most probable answer, until the most probable one has passed or is a cause that is not in the list. The
   /// check of an answer with causes is the same for all, and against the same fit without any.
   void find_answer() {
@@ -123,9 +130,8 @@ class Diagnostician {
     for (;;) {
       const Answer top = result_.answers.front();
       if (top.causes.empty()) {
-        if (top.unknown_cause || !is_other_material(tried_.refit_of({}).fit.u)) return;
-        fail({{}, {}, Failure::other_material});
-        continue;
+        check_material();
+        return;
       }
       if (failed_causes++ >= max_failed) {
         fail_all_others();

@@ -69,7 +69,7 @@ bool Explanations::cannot_lead(const std::vector<int>& causes) const {
   return linear < leading - (has_one_sign(causes) ? one_sided_error : 1) * model_.linear_error();
 }
 
-std::vector<Eigen::VectorXd> Explanations::at_usual_strengths_of(const std::vector<int>& causes) const {
+std::vector<Eigen::VectorXd> Explanations::strengths_to_start_from(const std::vector<int>& causes) const {
   std::vector<Eigen::VectorXd> strengths;
   for (const double multiple : usual_multiples) {
     Eigen::VectorXd u = model_.nominal();
@@ -87,7 +87,7 @@ std::optional<FitProblem> Explanations::problem_from_nominal(const std::vector<i
   if (has_one_sign(causes)) {
     // At zero it has a derivative on one side only, and that says little: start at the best of some strengths, with the
     // secant from none to there.
-    FitProblem result = problem(causes, at_usual_strengths_of(causes), {}, renewing_fit);
+    FitProblem result = problem(causes, strengths_to_start_from(causes), {}, renewing_fit);
     Eigen::VectorXd start = result.starts.front();
     std::optional<Predictions> there;
     double lowest = std::numeric_limits<double>::infinity();
@@ -120,7 +120,7 @@ void Explanations::refit_singles(const std::vector<std::vector<int>>& explanatio
   std::vector<Eigen::VectorXd> usual;
   for (const std::vector<int>& causes : explanations)
     if (has_one_sign(causes))
-      for (Eigen::VectorXd& u : at_usual_strengths_of(causes)) usual.push_back(std::move(u));
+      for (Eigen::VectorXd& u : strengths_to_start_from(causes)) usual.push_back(std::move(u));
   if (!usual.empty()) bag_.run(usual, context_, fitting_stage);
   std::vector<FitProblem> problems;
   for (const std::vector<int>& causes : explanations) problems.push_back(problem_from_base(causes, nullptr));

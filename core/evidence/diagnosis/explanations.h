@@ -101,8 +101,8 @@ class Explanations {
   /// None or one cause each, from both materials. Each is weighed.
   void refit_singles(const std::vector<std::vector<int>>& explanations);
   void refit_pairs(const std::vector<PairGuess>& guesses);
-  /// The set-up's own parameters, with these causes about as strong as they usually are.
-  std::vector<Eigen::VectorXd> at_usual_strengths_of(const std::vector<int>& causes) const;
+  /// The set-up's own parameters, with these causes half, once and twice as strong as they usually are.
+  std::vector<Eigen::VectorXd> strengths_to_start_from(const std::vector<int>& causes) const;
   /// One of their parameters is never negative.
   bool has_one_sign(const std::vector<int>& causes) const;
   /// Behind the linearised leader and the best fit so far by more than a linear model is wrong: not worth a fit, except

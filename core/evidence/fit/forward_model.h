@@ -98,6 +98,8 @@ struct SimulationExtension {
 
 class ForwardModel {
  public:
+  static constexpr double max_share_left = 0.6;  // of the misfit that a model is known to have by itself
+
   virtual ~ForwardModel() = default;
   virtual const std::vector<ModelParameter>& parameters() const = 0;
   virtual const std::vector<Cause>& causes() const = 0;
@@ -128,9 +130,10 @@ class ForwardModel {
   /// Size of structured misfit (in the measurement's unit) that the model is known to have without any fault of the
   /// machine.
   virtual double known_misfit() const = 0;
-  /// The largest structured misfit that the right causes leave: none, or the next smaller size of those considered.
-  virtual double max_misfit_left() const { return 0.6 * known_misfit(); }
-  /// Log evidence by which linear models, and fits that have made two steps, are wrong at most.
+  /// Structured misfit (in the measurement's unit) beyond which part of it counts as unexplained. Right causes leave
+  /// none, or the next smaller size of those that are considered.
+  virtual double max_misfit_left() const { return max_share_left * known_misfit(); }
+  /// Log evidence that linear models, and fits that have made two steps, are not wrong by.
   virtual double linear_error() const { return 150; }
 
   std::vector<int> parameters_with(ParameterRole role) const;

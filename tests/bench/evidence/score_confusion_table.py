@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Counts the lines of confusion_table and lists them: score_confusion_table.py FILE... [--engine N...] prints docs/confusion_table.md.
+"""Counts the lines of confusion_table and lists them: score_confusion_table.py FILE... [--rules N...] prints docs/confusion_table.md.
 
 Of every case the newest engine's answer counts, or the newest of engines N.
 A hidden cause is visible if it is stronger than `min_visible_strength`, which the diagnosis states without knowing the truth."""
@@ -121,12 +121,12 @@ def listed(cases, title):
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("files", nargs="+")
-    parser.add_argument("--engine", type=int, nargs="+", help="counts the answers of these engines alone")
+    parser.add_argument("--rules", type=int, nargs="+", metavar="VERSION", help="counts the answers by these versions of the rules alone")
     a = parser.parse_args()
     answers = [json.loads(line) for name in a.files for line in open(name) if line.startswith("{")]
     latest = {}
     for c in sorted(answers, key=lambda c: c.get("engine", 1)):
-        if not a.engine or c.get("engine", 1) in a.engine:
+        if not a.rules or c.get("engine", 1) in a.rules:
             latest[c["seed"]] = c
     failed = [c for c in latest.values() if "error" in c]
     cases = [c for c in latest.values() if "error" not in c]

@@ -114,8 +114,8 @@ Sheets that `tests/foreign_laboratory` formed, with a simulation of another kind
     if beside:
         strong = [c for c in beside if c["level"] == 1]
         table("Beside a good part", by_mould(strong))
-        print("\nA sheet without fault over the same mould, of the same machine and plastic, was given as a good part (`--good-part`). It is of another day: another temperature, thickness and "
-              "vacuum, by what machines in order differ (`on_another_day` in `forming.h`), with marks and noise of its own.")
+        print("\nA sheet without fault over the same mould, of the same machine and plastic, was given as a good part (`--good-part`). It is of another day: another temperature, thickness, pump and "
+              "mould, by as much as machines in order differ (`on_another_day` in `forming.h`), with marks and noise of its own.")
         tell_of_causes_in_no_list(strong)
         weaker_levels(beside)
         print_baselines("Baselines beside a good part", strong)

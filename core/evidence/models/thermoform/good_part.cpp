@@ -30,8 +30,7 @@ MachineInOrder machine_in_order(const std::vector<FormedObject>& good_parts, con
                                 Context& context) {
   // Nothing was wrong with these parts, so no cause may stand in for what the simulation leaves out.
   ThermoformModelOptions in_order = options;
-  const ThermoformModel with_causes(good_parts, options);
-  for (const Cause& cause : with_causes.causes()) in_order.without.push_back(cause.name);
+  in_order.without = thermoform_cause_names();
   const ThermoformModel usual(good_parts, std::move(in_order));
   MachineInOrder result;
   {

@@ -244,6 +244,12 @@ void declare_thermoform_parameters(const Json& nominal, const ThermoformModelOpt
   }
 }
 
+std::vector<std::string> thermoform_cause_names() {
+  std::vector<std::string> names;
+  for (const CauseTable& row : cause_table()) names.emplace_back(row.name);
+  return names;
+}
+
 bool has_extension(const ThermoformExtension& extension, const Json& nominal, const ThermoformModelOptions& options) {
   if (std::find(options.extensions.begin(), options.extensions.end(), extension.name) != options.extensions.end())
     return true;

@@ -48,8 +48,7 @@ Eigen::MatrixX2d in_opening(const std::vector<Reading>& readings, const Thermofo
 }
 
 /// Of a material's prior_sd: how far it may be from a profile's; and from that of a good part, which is the same
-/// plastic: 9 % of its stiffness and a fifth of its creep rate, what an oven does that repeats to two kelvins
-/// (docs/evidence.md, "Beside a good part").
+/// plastic: 9 % of its stiffness and a quarter of its creep rate. Assumed (docs/evidence.md, "Beside a good part").
 constexpr double known_share = 0.3, same_material_share = 0.15;
 constexpr double max_deviations = 4;  // from a good part's material
 

@@ -58,10 +58,11 @@ class ThermoformModel : public ForwardModel {
   Eigen::MatrixXd predict(int measurement, const Eigen::VectorXd& u, const Context& context) const override;
   bool claim(int object, const Eigen::VectorXd& u, const Context& context) const override;
   std::optional<ResultTask> task(int object, const Eigen::VectorXd& u, const Context& context) const override;
-  /// Beside a good part half: at most 0.03 mm were left of twelve sheets of the foreign laboratory that had no fault.
+  /// Beside a good part half: at most 0.04 mm were left of 18 sheets of the foreign laboratory that had no fault.
   double known_misfit() const override { return (options_.good_parts ? 0.5 : 1) * misfit_mm; }
-  double max_misfit_left() const override { return 0.6 * misfit_mm; }
-  /// With half the misfit, evidence counts more.
+  /// Beside a good part as much as without: what a fault changes, the simulation gets no better.
+  double max_misfit_left() const override { return max_share_left * misfit_mm; }
+  /// With half the misfit to allow for, the same distance is more log evidence: slip on a box was given up with 150.
   double linear_error() const override { return options_.good_parts ? 300 : 150; }
   std::string in_words(int cause, const std::vector<double>& values) const override;
   /// On a quarter of the triangles, where that leaves enough of them.
@@ -127,6 +128,9 @@ class ThermoformModel : public ForwardModel {
 /// `nominal`: what set-up and profile say.
 void declare_thermoform_parameters(const Json& nominal, const ThermoformModelOptions& options,
                                    std::vector<ModelParameter>& parameters, std::vector<Cause>& causes);
+
+/// Names of all causes that a diagnosis considers.
+std::vector<std::string> thermoform_cause_names();
 
 /// Makes the simulation the other one that the discrepancy of this name stands for.
 void apply_discrepancy(const std::string& name, ThermoformOptions& options);

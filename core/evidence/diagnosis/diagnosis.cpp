@@ -204,7 +204,7 @@ class Diagnostician {
     for (const int cause : causes) {
       const CauseFinding& finding = finding_of(cause);
       const bool can_be_shown = causes.size() > 1 || std::isfinite(finding.min_visible_strength);
-      if (can_be_shown && std::abs(finding.strength) > distinguishable_strength * half_width_with_model(finding))
+      if (can_be_shown && change(finding) > distinguishable_strength * half_width_with_model(finding))
         shown.push_back(cause);
     }
     return shown;
@@ -224,7 +224,7 @@ class Diagnostician {
     for (const int cause : result_.verdict) {
       const CauseFinding& finding = finding_of(cause);
       if (finding.probability < likely) doubt(nearly_as_likely);
-      if (std::abs(finding.strength) < plain_strength * 0.5 * (finding.high - finding.low))
+      if (change(finding) < plain_strength * 0.5 * (finding.high - finding.low))
         doubt("Its strength is hardly distinguishable from zero.");
     }
   }
@@ -299,13 +299,22 @@ class Diagnostician {
                               ? 4 * beyond_noise(0.25 * finding.min_visible_strength, finding.noise_deviation)
                               : 0;
     const double gain =
-        normal_quantile * model_.causes()[static_cast<std::size_t>(finding.cause)].gain_error * finding.strength;
+        normal_quantile * model_.causes()[static_cast<std::size_t>(finding.cause)].gain_error * change(finding);
     return std::sqrt(std::pow(0.5 * (finding.high - finding.low), 2) + misfit + gain * gain);
   }
 
   const CauseFinding& finding_of(int cause) const {
     return *std::find_if(result_.causes.begin(), result_.causes.end(),
                          [&](const CauseFinding& f) { return f.cause == cause; });
+  }
+
+  /// By how much the cause changes what set-up, profile and chosen simulation already have of it.
+  double change(const CauseFinding& finding) const {
+    const std::vector<int>& own = model_.causes()[static_cast<std::size_t>(finding.cause)].parameters;
+    double squares = 0;
+    for (std::size_t k = 0; k < own.size(); ++k)
+      squares += std::pow(finding.values[k] - model_.parameters()[static_cast<std::size_t>(own[k])].nominal, 2);
+    return std::sqrt(squares);
   }
 
   void find_causes() {
@@ -430,8 +439,12 @@ Diagnosis diagnose(SimulationBag& bag, const DiagnosisOptions& options, Context&
     Explanations again(fine_bag, options.pairs, context);
     try {
       again.look_again(tried);
-      result = Diagnostician(fine_bag, again, context).run();
-      result.looked_again = true;
+      // A finer sheet that fits worse has not found what a coarser one has: where steep walls make it leap, its fits
+      // end early.
+      if (again.error() <= tried.error()) {
+        result = Diagnostician(fine_bag, again, context).run();
+        result.looked_again = true;
+      }
     } catch (const Error& error) {
       if (error.code() != ErrorCode::could_not_solve) throw;
       // Where it has no answer the coarser one's stands, with its doubts.

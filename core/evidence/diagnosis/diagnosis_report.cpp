@@ -58,6 +58,8 @@ Json simulation_json(const SimulationChoice& choice) {
     list.push_back({{"name", t.extension.name},
                     {"label", t.extension.label},
                     {"taken", t.taken},
+                    {"fitted", t.fitted},
+                    {"advised", t.advised},
                     {"explanation", t.extension.explanation},
                     {"remedy", t.extension.remedy},
                     {"log_evidence_gain", t.log_evidence_gain},

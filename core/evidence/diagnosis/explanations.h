@@ -36,6 +36,8 @@ class Explanations {
 
   /// One explanation leads all others by far and leaves nothing.
   bool decided() const;
+  /// Mean distance of all points from the most probable explanation.
+  double error() const;
   /// Instead of the three: weighs what `coarse`, of a coarser simulation of the same data, has found likely or nearly
   /// so, beginning from its fits. Fills everything. Throws Error{could_not_solve, cancelled}.
   void look_again(Explanations& coarse);

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "base/error.h"
+#include "evidence/calibration.h"
 #include "evidence/diagnosis/explanations.h"
 #include "evidence/fit/free_fit.h"
 
@@ -29,6 +30,10 @@ bool Explanations::decided() const {
   return std::all_of(hypotheses_.begin(), hypotheses_.end(), [&](const Hypothesis& h) {
     return h.causes == best.causes || h.log_evidence < best.log_evidence - decisive;
   });
+}
+
+double Explanations::error() const {
+  return mean_distance(model_, residuals(model_, refit_of(hypotheses_.front().causes).fit.predictions));
 }
 
 std::vector<const Explanations::Refit*> Explanations::likeliest_refits() const {
@@ -60,13 +65,19 @@ void Explanations::refit_as(const std::vector<const Refit*>& coarse) {
         continue;
       candidates.push_back({refit, fit});
       starts.push_back(fit->u);
+      // The finer sheet may want another material.
+      candidates.push_back({refit, fit});
+      starts.push_back(refit_of({}).fit.u);
+      for (const int cause : refit->causes)
+        for (const int p : model_.causes()[static_cast<std::size_t>(cause)].parameters) starts.back()[p] = fit->u[p];
     }
   if (starts.empty()) return;
   const auto predictions = bag_.run(starts, context_, fitting_stage);
   std::vector<FitProblem> problems;
   std::vector<const Refit*> again;
   for (const Refit* refit : coarse) {
-    double best_value = refit_of({}).fit.value + out_of_reach;
+    double best_value =
+        refit == coarse.front() ? std::numeric_limits<double>::infinity() : refit_of({}).fit.value + out_of_reach;
     std::optional<FitProblem> best;
     for (std::size_t i = 0; i < candidates.size(); ++i) {
       if (candidates[i].refit != refit || !predictions[i]) continue;

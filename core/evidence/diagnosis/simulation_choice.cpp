@@ -2,7 +2,6 @@
 #include "evidence/diagnosis/simulation_choice.h"
 
 #include <algorithm>
-#include <limits>
 #include <memory>
 #include <optional>
 
@@ -15,7 +14,9 @@ namespace {
 
 constexpr const char* stage = "Choosing the simulation";
 constexpr FitOptions choosing_fit{7, 0.01, false};
-constexpr double min_gain = 20;  // of log evidence: a finer mesh alone moves it by about as much
+constexpr double min_gain = 20;    // of log evidence: a finer mesh alone moves it by about as much
+constexpr double min_promise = 0;  // of log evidence, of one look: a fit gains more
+constexpr int usual_rounds = 2;    // how often one is added at most, for the progress
 
 /// The nominal material, `before`'s, and such as differ from the nominal one in one parameter. What an extension brings
 /// begins at its usual strength.
@@ -52,6 +53,11 @@ FitProblem calibration(const ForwardModel& model, double softness, const Paramet
           spread_starts(model, before),
           {},
           choosing_fit};
+}
+
+/// The same where one look from `before` has promised a gain: from there on.
+FitProblem promised_calibration(const ForwardModel& model, double softness, const ParameterFit& before) {
+  return {mean_distance_objective(model, softness), model.base_parameters(), {before.u}, {}, choosing_fit};
 }
 
 /// What the causes of the usual simulation do about it. An extension changes that little.
@@ -97,82 +103,186 @@ double log_evidence(const ForwardModel& model, const ParameterFit& fit, const Mi
   return all.log_evidence;
 }
 
-SimulationChoice chosen(const ForwardModel& model, Context& context) {
-  SimulationChoice choice;
-  const std::size_t rounds = model.extensions().size();
-  if (rounds == 0) return choice;
-  const auto parts = static_cast<double>(3 + 2 * rounds);
-  double done = 0;
-  const auto part = [&](auto&& work) {
-    const auto span = context.span(std::min(1.0, done / parts), std::min(1.0, (done + 1) / parts), stage);
-    ++done;
-    return work();
-  };
-  SimulationBag usual_bag(model);
-  const auto at_nominal = usual_bag.run(model.nominal(), context, stage);
-  if (!at_nominal) return choice;  // whoever calibrates it says so
-  std::vector<NoiseEstimate> noise;
-  const Predictions left = residuals(model, *at_nominal);
-  for (std::size_t m = 0; m < left.size(); ++m) noise.push_back(estimate_noise(model.measurements()[m], left[m]));
-  const double softness = largest_noise(model, noise);
-  ParameterFit best =
-      part([&] { return fit_parameters(usual_bag, calibration(model, softness, nullptr), context, stage); });
-  FreeCauses causes;
-  for (const Cause& cause : model.causes())
-    for (const int p : cause.parameters) causes.columns.push_back(p);
-  causes.sensitivities =
-      part([&] { return sensitivities_at(usual_bag, best.u, best.predictions, causes.columns, context, stage); });
-  const ParameterFit best_with_causes =
-      part([&] { return fit_parameters(usual_bag, with_causes(model, softness, best, causes), context, stage); });
-  // The same weights for all, without what passed for outliers only because a cause was at work.
-  const Predictions free = residuals(model, best_with_causes.predictions);
+/// Of each measurement: weights of its points, without what passes for outliers.
+std::vector<Eigen::VectorXd> weights_about(const ForwardModel& model, const Predictions& predictions) {
+  const Predictions left = residuals(model, predictions);
+  std::vector<Eigen::VectorXd> weights;
+  for (std::size_t m = 0; m < left.size(); ++m)
+    weights.push_back(estimate_noise(model.measurements()[m], left[m]).weights);
+  return weights;
+}
+
+/// A simulation, calibrated without causes and with all of them.
+struct Calibrated {
+  const ForwardModel* model = nullptr;
+  ParameterFit alone, with_causes;
+};
+
+/// By how much `other` raises the marginal likelihood. Both with the same weights: what passes for an outlier in one of
+/// them only because that one is wrong there counts in both.
+double log_evidence_gain(const Calibrated& before, const ForwardModel& other, const ParameterFit& other_with_causes) {
+  const std::vector<Eigen::VectorXd> own = weights_about(*before.model, before.with_causes.predictions),
+                                     others = weights_about(other, other_with_causes.predictions);
   std::vector<Precisions> precisions;
-  for (std::size_t m = 0; m < free.size(); ++m) {
-    const Measurement& measurement = model.measurements()[m];
-    precisions.push_back(isotropic(estimate_noise(measurement, free[m]).weights, measurement.measured.cols()));
+  for (std::size_t m = 0; m < own.size(); ++m)
+    precisions.push_back(
+        isotropic((own[m].array() > 0).select(own[m], others[m]), before.model->measurements()[m].measured.cols()));
+  const MisfitOfAll misfit(*before.model, precisions);
+  return log_evidence(other, other_with_causes, misfit) - log_evidence(*before.model, before.with_causes, misfit);
+}
+
+double mean_error(const ForwardModel& model, const ParameterFit& fit) {
+  return mean_distance(model, residuals(model, fit.predictions));
+}
+
+/// `extension` where `before` is calibrated with all causes; what it brings to fit is at its usual strength. Empty
+/// where it has no answer.
+std::optional<TriedExtension> one_look(const Calibrated& before, const SimulationExtension& extension, int& simulations,
+                                       Context& context) {
+  SimulationBag bag(*extension.model);
+  Eigen::VectorXd at = before.with_causes.u;
+  for (const int p : extension.model->base_parameters())
+    if (std::find(before.alone.free.begin(), before.alone.free.end(), p) == before.alone.free.end())
+      at[p] = extension.model->parameters()[static_cast<std::size_t>(p)].prior_sd;
+  auto there = bag.run(at, context, stage);
+  simulations += bag.simulations();
+  if (!there) return std::nullopt;
+  ParameterFit moved = before.with_causes;
+  moved.u = at;
+  moved.predictions = std::move(*there);
+  TriedExtension tried{extension};
+  tried.log_evidence_gain = log_evidence_gain(before, *extension.model, moved);
+  tried.error_before_mm = mean_error(*before.model, before.with_causes);
+  tried.error_after_mm = mean_error(*extension.model, moved);
+  return tried;
+}
+
+class Choosing {
+ public:
+  Choosing(const ForwardModel& model, Context& context) : model_(model), context_(context) {
+    rounds_ = static_cast<int>(model.extensions().size());
   }
-  const MisfitOfAll misfit(model, precisions);
-  double best_evidence = log_evidence(model, best_with_causes, misfit);
-  const ForwardModel* best_model = &model;
-  choice.simulations = usual_bag.simulations();
-  for (;;) {
-    std::optional<ParameterFit> leader;
-    double leading = -std::numeric_limits<double>::infinity();
-    const ForwardModel* leading_model = nullptr;
-    std::size_t leading_place = 0;
-    const double error_before = mean_distance(*best_model, residuals(*best_model, best.predictions));
-    const std::vector<SimulationExtension> extensions = best_model->extensions();
+
+  SimulationChoice run();
+
+ private:
+  template <class Work>
+  auto part(Work&& work) {
+    const auto parts = static_cast<double>(3 + 2 * std::min(rounds_, usual_rounds));
+    const auto span = context_.span(std::min(1.0, done_ / parts), std::min(1.0, (done_ + 1) / parts), stage);
+    ++done_;
+    return work();
+  }
+
+  bool calibrate_usual() {
+    SimulationBag bag(model_);
+    const auto at_nominal = bag.run(model_.nominal(), context_, stage);
+    if (!at_nominal) return false;
+    std::vector<NoiseEstimate> noise;
+    const Predictions left = residuals(model_, *at_nominal);
+    for (std::size_t m = 0; m < left.size(); ++m) noise.push_back(estimate_noise(model_.measurements()[m], left[m]));
+    softness_ = largest_noise(model_, noise);
+    best_.model = &model_;
+    best_.alone = part([&] { return fit_parameters(bag, calibration(model_, softness_, nullptr), context_, stage); });
+    for (const Cause& cause : model_.causes())
+      for (const int p : cause.parameters) causes_.columns.push_back(p);
+    causes_.sensitivities = part([&] {
+      return sensitivities_at(bag, best_.alone.u, best_.alone.predictions, causes_.columns, context_, stage);
+    });
+    best_.with_causes = part(
+        [&] { return fit_parameters(bag, with_causes(model_, softness_, best_.alone, causes_), context_, stage); });
+    choice_.simulations = bag.simulations();
+    return true;
+  }
+
+  /// A fit has shown that it gains little, whatever one look promises.
+  bool broken_promise(const SimulationExtension& extension) const {
+    return extension.trial == ExtensionTrial::fit_if_one_look_promises &&
+           std::any_of(choice_.tried.begin(), choice_.tried.end(), [&](const TriedExtension& t) {
+             return t.fitted && t.log_evidence_gain < min_gain && t.extension.name == extension.name;
+           });
+  }
+
+  /// Those worth a fit; the others are noted as tried.
+  std::vector<SimulationExtension> promising() {
+    std::vector<SimulationExtension> list;
+    for (const SimulationExtension& extension : best_.model->extensions()) {
+      if (extension.trial == ExtensionTrial::one_look || broken_promise(extension)) continue;
+      if (extension.trial == ExtensionTrial::fit_if_one_look_promises) {
+        auto tried = one_look(best_, extension, choice_.simulations, context_);
+        if (!tried) continue;
+        if (tried->log_evidence_gain <= min_promise) {
+          choice_.tried.push_back(std::move(*tried));
+          continue;
+        }
+      }
+      list.push_back(extension);
+    }
+    return list;
+  }
+
+  /// Takes the extension that raises the marginal likelihood most. False where none raises it clearly.
+  bool extend() {
+    const std::vector<SimulationExtension> extensions = promising();
     std::vector<std::unique_ptr<SimulationBag>> bags;
     std::vector<std::optional<FitProblem>> problems;
     for (const SimulationExtension& extension : extensions) {
       bags.push_back(std::make_unique<SimulationBag>(*extension.model));
-      problems.push_back(calibration(*extension.model, softness, &best));
+      problems.push_back(extension.trial == ExtensionTrial::fit
+                             ? calibration(*extension.model, softness_, &best_.alone)
+                             : promised_calibration(*extension.model, softness_, best_.alone));
     }
-    const auto fits = part([&] { return fitted(bags, std::move(problems), context); });
+    auto fits = part([&] { return fitted(bags, std::move(problems), context_); });
     problems.assign(extensions.size(), std::nullopt);
     for (std::size_t i = 0; i < extensions.size(); ++i)
-      if (fits[i]) problems[i] = with_causes(*extensions[i].model, softness, *fits[i], causes);
-    const auto fits_with_causes = part([&] { return fitted(bags, std::move(problems), context); });
+      if (fits[i]) problems[i] = with_causes(*extensions[i].model, softness_, *fits[i], causes_);
+    auto fits_with_causes = part([&] { return fitted(bags, std::move(problems), context_); });
+    const double error_before = mean_error(*best_.model, best_.alone);
+    std::optional<std::size_t> leader;
+    std::size_t leading_place = 0;
+    double leading = min_gain;
     for (std::size_t i = 0; i < extensions.size(); ++i) {
-      choice.simulations += bags[i]->simulations();
+      choice_.simulations += bags[i]->simulations();
       if (!fits_with_causes[i]) continue;
-      const double evidence = log_evidence(*extensions[i].model, *fits_with_causes[i], misfit);
-      if (evidence > leading) {
-        leading = evidence;
-        leading_model = extensions[i].model;
-        leading_place = choice.tried.size();
-        leader = fits[i];
+      const double gain = log_evidence_gain(best_, *extensions[i].model, *fits_with_causes[i]);
+      if (gain >= leading) {
+        leading = gain;
+        leader = i;
+        leading_place = choice_.tried.size();
       }
-      choice.tried.push_back({extensions[i], evidence - best_evidence, error_before,
-                              mean_distance(model, residuals(model, fits[i]->predictions)), false});
+      choice_.tried.push_back({extensions[i], true, gain, error_before, mean_error(*extensions[i].model, *fits[i])});
     }
-    choice.u = best.u;
-    if (!leader || leading < best_evidence + min_gain) return choice;
-    choice.tried[leading_place].taken = true;
-    best = std::move(*leader);
-    best_evidence = leading;
-    best_model = leading_model;
+    if (!leader) return false;
+    choice_.tried[leading_place].taken = true;
+    best_ = {extensions[*leader].model, std::move(*fits[*leader]), std::move(*fits_with_causes[*leader])};
+    return true;
   }
+
+  void advise() {
+    for (const SimulationExtension& extension : best_.model->extensions()) {
+      if (extension.trial != ExtensionTrial::one_look) continue;
+      auto tried = one_look(best_, extension, choice_.simulations, context_);
+      if (!tried) continue;
+      tried->advised = tried->log_evidence_gain >= min_gain && tried->error_after_mm < tried->error_before_mm;
+      choice_.tried.push_back(std::move(*tried));
+    }
+  }
+
+  const ForwardModel& model_;
+  Context& context_;
+  int rounds_ = 0;
+  double done_ = 0, softness_ = 0;
+  Calibrated best_;
+  FreeCauses causes_;
+  SimulationChoice choice_;
+};
+
+SimulationChoice Choosing::run() {
+  if (rounds_ == 0 || !calibrate_usual()) return std::move(choice_);  // whoever calibrates it says so
+  while (extend()) continue;
+  choice_.u = best_.alone.u;
+  part([&] { advise(); });
+  return std::move(choice_);
 }
 
 }  // namespace
@@ -187,7 +297,7 @@ std::vector<std::string> SimulationChoice::taken() const {
 SimulationChoice choose_simulation(const ForwardModel& model, Context& context) {
   Stopwatch watch;
   try {
-    SimulationChoice choice = chosen(model, context);
+    SimulationChoice choice = Choosing(model, context).run();
     choice.seconds = watch.seconds();
     return choice;
   } catch (const Error& error) {

@@ -12,9 +12,12 @@ namespace formwright {
 /// An extension that was tried, on top of those taken before it.
 struct TriedExtension {
   SimulationExtension extension;
-  double log_evidence_gain = 0;                    // whatever cause may be at work as well
-  double error_before_mm = 0, error_after_mm = 0;  // mean distance, calibrated, without and with it
+  bool fitted = false;           // else it got one look
+  double log_evidence_gain = 0;  // whatever cause may be at work as well
+  double error_before_mm = 0,
+         error_after_mm = 0;  // mean distance, calibrated (after one look: not anew), without and with it
   bool taken = false;
+  bool advised = false;  // not taken, but one look promises that it would fit better
 };
 
 struct SimulationChoice {
@@ -28,7 +31,8 @@ struct SimulationChoice {
 };
 
 /// Calibrates `model` and its extensions, and takes what raises the marginal likelihood clearly,
-/// every cause left free, the best first and one at a time. Throws Error{could_not_solve, cancelled}.
+/// every cause left free, the best first and one at a time. A point is an outlier only where neither of two simulations
+/// explains it. Throws Error{could_not_solve, cancelled}.
 SimulationChoice choose_simulation(const ForwardModel& model, Context& context);
 
 }  // namespace formwright

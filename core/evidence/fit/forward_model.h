@@ -85,8 +85,13 @@ struct Measurement {
 
 class ForwardModel;
 
+/// How much work it takes to see whether an extension is needed. One look: a single simulation where the calibrated one
+/// is, the rest by linear models.
+enum class ExtensionTrial { fit, fit_if_one_look_promises, one_look };
+
 /// Something that the simulation leaves out unless a setting turns it on. It is a fault of ours, not of a machine:
-/// where data show it, causes are looked for with it.
+/// where data show it, causes are looked for with it. What gets one look alone costs too much to be taken, and is
+/// advised.
 struct SimulationExtension {
   std::string name, label;
   std::string explanation;  // what the simulation leaves out, in a sentence
@@ -94,6 +99,7 @@ struct SimulationExtension {
   /// With it: the same objects, and the same parameters and causes in the same places; what it brings to fit is a base
   /// parameter of this one and of no cause in the other.
   const ForwardModel* model = nullptr;
+  ExtensionTrial trial = ExtensionTrial::fit;
 };
 
 class ForwardModel {

@@ -5,9 +5,6 @@
 #include <algorithm>
 #include <numeric>
 
-#include "geometry/mesh/adjacency.h"
-#include "geometry/queries/ray_caster.h"
-
 namespace formwright {
 
 RigidMotion best_motion(const Positions& from, const Positions& to, const Eigen::VectorXd& weight, bool mirrored) {
@@ -45,28 +42,6 @@ ShapeComparison compare_shapes(const Positions& shape, const Positions& predicte
     if (passed >= 0.95 * weight.sum()) break;
   }
   return best;
-}
-
-int count_crossings(const TriangleMesh& mesh, const std::vector<int>& place_of, Context& context) {
-  const RayCaster caster(mesh);
-  const Adjacency adjacency(mesh);
-  int count = 0, visited = 0;
-  for (const Edge& edge : adjacency.edges()) {
-    if (++visited % 256 == 0) context.check_cancelled();
-    const Vec3 from = mesh.V.row(edge.lower), along = mesh.V.row(edge.higher).transpose() - from;
-    const double length = along.norm();
-    if (!(length > 0)) continue;
-    for (const RayHit& hit : caster.all_hits(from, along / length, 0, length)) {
-      bool apart = true;
-      for (int k = 0; k < 3; ++k) {
-        const int place = place_of[static_cast<std::size_t>(mesh.F(hit.face, k))];
-        apart = apart && place != place_of[static_cast<std::size_t>(edge.lower)] &&
-                place != place_of[static_cast<std::size_t>(edge.higher)];
-      }
-      count += apart;
-    }
-  }
-  return count;
 }
 
 }  // namespace formwright

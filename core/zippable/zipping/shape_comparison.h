@@ -29,7 +29,4 @@ struct ShapeComparison {
 
 ShapeComparison compare_shapes(const Positions& shape, const Positions& predicted, const Eigen::VectorXd& weight);
 
-/// Edges that pierce triangles. `place_of`: per vertex; what shares a place does not count.
-int count_crossings(const TriangleMesh& mesh, const std::vector<int>& place_of, Context& context);
-
 }  // namespace formwright

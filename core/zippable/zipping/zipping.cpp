@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "geometry/queries/crossings.h"
 #include "base/random.h"
 #include "zippable/zipping/made_pattern.h"
 

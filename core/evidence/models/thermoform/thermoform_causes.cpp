@@ -3,6 +3,7 @@
 // simulation's own parameters.
 #include <algorithm>
 
+#include "evidence/models/thermoform/thermoform_extensions.h"
 #include "evidence/models/thermoform/thermoform_model.h"
 
 namespace formwright {
@@ -146,27 +147,6 @@ const std::vector<CauseTable>& cause_table() {
   return table;
 }
 
-constexpr VariedParameter network{"network_share", false, 0, 0.8, 0.3, 0.08};
-
-}  // namespace
-
-const std::vector<ThermoformExtension>& thermoform_extensions() {
-  static const std::vector<ThermoformExtension> table = {
-      {"lasting_network", "Part of the plastic never flows",
-       "Part of the hot plastic pulls back like rubber, the more the more it is drawn, and keeps steep walls thicker.",
-       "The setting “Stiffness that never flows” (network_share) keeps that part; the profile has it. A simulation takes up to a third longer.",
-       &network, Json::object()},
-      {"constant_volume",
-       "The plastic keeps its volume",
-       "Hot plastic thins exactly as much as it is stretched, and is stiffer in two directions at once than in one.",
-       "The setting “Elastic law” (elastic_law) does that; the profile has it. A simulation takes as long as before.",
-       nullptr,
-       {{"elastic_law", "incompressible_neo_hookean"}}}};
-  return table;
-}
-
-namespace {
-
 /// Another choice that a simulation of equal merit makes. Its sensitivities are what that simulation would do.
 struct Discrepancy {
   std::string_view name, label;
@@ -248,15 +228,6 @@ std::vector<std::string> thermoform_cause_names() {
   std::vector<std::string> names;
   for (const CauseTable& row : cause_table()) names.emplace_back(row.name);
   return names;
-}
-
-bool has_extension(const ThermoformExtension& extension, const Json& nominal, const ThermoformModelOptions& options) {
-  if (std::find(options.extensions.begin(), options.extensions.end(), extension.name) != options.extensions.end())
-    return true;
-  if (extension.parameter != nullptr) return nominal.value(extension.parameter->name, 0.0) != 0;
-  return std::all_of(extension.settings.items().begin(), extension.settings.items().end(), [&](const auto& setting) {
-    return nominal.contains(setting.key()) && nominal[setting.key()] == setting.value();
-  });
 }
 
 void apply_discrepancy(const std::string& name, ThermoformOptions& options) {

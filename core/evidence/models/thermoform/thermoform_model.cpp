@@ -6,6 +6,7 @@
 
 #include "evidence/models/thermoform/cause_words.h"
 #include "evidence/models/thermoform/rim_thickness.h"
+#include "evidence/models/thermoform/thermoform_extensions.h"
 
 namespace formwright {
 namespace {
@@ -167,10 +168,11 @@ std::vector<SimulationExtension> ThermoformModel::extensions() const {
     auto& model = extended_[extension.name];
     if (!model) {
       ThermoformModelOptions more = options_;
-      more.extensions.emplace_back(extension.name);
+      apply_extension(extension, more);
       model = std::make_unique<ThermoformModel>(objects_, std::move(more));
     }
-    list.push_back({extension.name, extension.label, extension.explanation, extension.remedy, model.get()});
+    list.push_back(
+        {extension.name, extension.label, extension.explanation, extension.remedy, model.get(), extension.trial});
   }
   return list;
 }
@@ -199,7 +201,7 @@ ThermoformOptions ThermoformModel::simulation_options(int object, const Eigen::V
   const Json measurement = write_parameters(none);
   values["triangles"] = options_.triangles;
   values["frames"] = 2;
-  values["step_mm"] = 0.6;  // automatic steps are longer, and their noise drowns what small changes do
+  values["step_mm"] = options_.step_mm;
   for (std::size_t i = 0; i < parameters_.size(); ++i) {
     const ModelParameter& p = parameters_[i];
     const double at = u[static_cast<Eigen::Index>(i)];

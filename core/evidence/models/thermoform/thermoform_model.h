@@ -18,6 +18,7 @@ namespace formwright {
 
 struct ThermoformModelOptions {
   int triangles = 5000;
+  double step_mm = 0.6;                 // automatic steps are longer, and their noise drowns what small changes do
   bool fit_mould_place = false;         // as calibration does: the mould's place is a base parameter, no cause
   MachineProfile profile;               // what is known of the machine; empty where nothing is
   std::vector<std::string> without;     // causes that are not considered
@@ -34,16 +35,6 @@ struct VariedParameter {
   double low, high;
   double prior_sd, probe;
 };
-
-/// What the simulation of a sheet can do that it usually leaves out.
-struct ThermoformExtension {
-  const char *name, *label, *explanation, *remedy;
-  const VariedParameter* parameter;  // that it brings to fit; null where it is a setting alone
-  Json settings = Json::object();    // parameters of ThermoformOptions
-};
-const std::vector<ThermoformExtension>& thermoform_extensions();
-/// Among `options`, or in what set-up and profile say (`nominal`).
-bool has_extension(const ThermoformExtension& extension, const Json& nominal, const ThermoformModelOptions& options);
 
 /// Its measurements are the places of each object in their order; then, of each object that has any, the thickness
 /// within the clamp opening and that of the rim.

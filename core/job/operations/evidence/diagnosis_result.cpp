@@ -61,7 +61,7 @@ std::vector<ReportField> diagnosis_report_fields() {
        "The explanations that fit best, before any check: their causes, whether an unknown pattern remains, probability and log evidence."},
       {"parameters", "Material", "", "Material parameters, calibrated alone and with the named causes included."},
       {"simulation", "Simulation", "",
-       "What the simulation leaves out and was tried with before causes were looked for: whether it was taken, how much better it fits, the calibrated mean error without and with it, and the setting that does it."},
+       "What the simulation leaves out and was tried with before causes were looked for: whether it was taken, fitted or got one look, or is advised; how much better it fits, the calibrated mean error without and with it, and the setting that does it."},
       {"simulations", "Simulations", "", "Number of simulations that were run."},
       {"seconds_calibration", "Calibration", "s", "Time for the calibration, part of the diagnosis."},
       {"seconds_diagnosis", "Diagnosis", "s", "Time for the whole diagnosis, without the validation objects."},

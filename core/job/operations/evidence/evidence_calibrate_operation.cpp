@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/format.h"
 #include "evidence/diagnosis/simulation_choice.h"
 #include "job/contract/operation_options.h"
 #include "job/operations/evidence/evidence_input.h"
@@ -137,6 +138,10 @@ OperationResult run_evidence_calibrate(const OperationCall& call, const Calibrat
   }
   if (calibration.profiles.empty()) parameters = parameter_values(model, calibration.u, ParameterRole::base);
   for (const TriedExtension& t : choice.tried) {
+    if (t.advised)
+      notes.push_back(t.extension.label + ": not included, since it takes longer; the mean error would be " +
+                      with_digits(t.error_after_mm, 2) + " instead of " + with_digits(t.error_before_mm, 2) + " mm. " +
+                      t.extension.remedy);
     if (!t.taken) continue;
     const std::string sentence =
         t.extension.label + ": the usual simulation leaves that out, this profile includes it. " + t.extension.remedy;

@@ -5,6 +5,7 @@
 #include "evidence/diagnosis/unseen.h"
 #include "evidence/models/thermoform/good_part.h"
 #include "evidence/models/thermoform/proposals.h"
+#include "geometry/queries/crossings.h"
 #include "job/contract/operation_options.h"
 #include "job/operations/evidence/diagnosis_result.h"
 #include "job/operations/evidence/evidence_input.h"
@@ -183,6 +184,14 @@ OperationResult run_evidence_diagnose(const OperationCall& call, const DiagnoseO
   if (diagnosis.looked_again)
     report.notes.push_back("A sheet of " + std::to_string(o.triangles) +
                            " triangles did not decide it: looked at again on twice as many.");
+  for (int i = 0; i < static_cast<int>(model.objects().size()); ++i)
+    if (const int crossings =
+            count_crossings(model.formed(i, diagnosis.extended.u, call.context)->mesh, {}, call.context);
+        crossings > 0)
+      report.notes.push_back(
+          "Our simulation: the sheet of " + model.objects()[static_cast<std::size_t>(i)].name +
+          " goes through itself (" + std::to_string(crossings) +
+          " crossings), where a real one folds into a web. Errors beside webs are our simulation's.");
   if (in_order) {
     for (const FormedObject& part : *options.good_parts) report.good_parts.push_back(part.name);
     std::string names;

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "geometry/mesh/adjacency.h"
+#include "geometry/queries/crossings.h"
 #include "base/data/fix.h"
 #include "base/format.h"
 #include "job/contract/operation_options.h"
@@ -58,6 +59,8 @@ std::vector<ReportField> thermoform_simulate_report_fields() {
        "Fraction of the sheet's movable vertices that touch the model or the plate."},
       {"webbing_area_mm2", "Squeezed area", "mm²",
        "Area that is compressed by more than a tenth in some direction. Folds and webs begin there."},
+      {"crossings", "Crossings", "",
+       "How often the sheet's edges go through the sheet itself; an error of the simulation, which lets it pass."},
       {"mould_edge_penetration_mm", "Edge penetration", "mm",
        "Greatest depth to which a sharp point of the model pierces the inner face of the sheet; an error of the simulation."},
       {"vertex_distance_min_mm", "Smallest distance", "mm",
@@ -89,7 +92,7 @@ std::vector<ReportField> thermoform_simulate_report_fields() {
 
 /// What a maker should know before heating a sheet. `height_mm`: of the model above the plate.
 std::vector<std::string> warnings(const FormedResult& result, const ThermoformOptions& o, double height_mm,
-                                  bool watertight, std::vector<Fix>& fixes) {
+                                  bool watertight, int crossings, std::vector<Fix>& fixes) {
   std::vector<std::string> list;
   // A model that stands less high draws less of the sheet: on cat, bust, pyramid and star it thins less and folds less.
   const auto lower_it = [&] {
@@ -106,9 +109,13 @@ std::vector<std::string> warnings(const FormedResult& result, const ThermoformOp
         " mm, less than a third of its thickness: it may tear there. A lower model, rounder edges or a thicker sheet help.");
     lower_it();
   }
-  if (result.webbing_area_mm2 > 0.005 * (result.formed_area_mm2 + result.unformed_area_mm2)) {
-    list.push_back("Parts of the sheet are squeezed (" + with_digits(result.webbing_area_mm2 / 100, 2) +
-                   " cm²): it may fold into webs there. More distance between tall parts, or from the clamp, helps.");
+  const bool squeezed = result.webbing_area_mm2 > 0.005 * (result.formed_area_mm2 + result.unformed_area_mm2);
+  if (squeezed || crossings > 0) {
+    list.push_back(squeezed ? "Parts of the sheet are squeezed (" + with_digits(result.webbing_area_mm2 / 100, 2) +
+                                  " cm²): it may fold into webs there."
+                            : "The sheet may fold into webs.");
+    if (crossings > 0) list.back() += " The simulated one goes through itself instead.";
+    list.back() += " More distance between tall parts, or from the clamp, helps.";
     lower_it();
   }
   if (result.unformed_area_mm2 > 0.02 * (result.formed_area_mm2 + result.unformed_area_mm2))
@@ -190,6 +197,8 @@ OperationResult run_thermoform_simulate(const OperationCall& call, const Json& g
   report["unformed_area_mm2"] = formed.unformed_area_mm2;
   report["touching_share"] = formed.touching_share;
   report["webbing_area_mm2"] = formed.webbing_area_mm2;
+  const int crossings = count_crossings(sheet.mesh, {}, call.context);
+  report["crossings"] = crossings;
   report["mould_edge_penetration_mm"] = formed.mould_edge_penetration_mm;
   report["vertex_distance_min_mm"] = formed.vertex_distance_min_mm;
   report["volume_drift"] = formed.volume_drift;
@@ -213,7 +222,7 @@ OperationResult run_thermoform_simulate(const OperationCall& call, const Json& g
     for (const std::string& note : simulation.setup->notes) notes.push_back(note);
   report["notes"] = notes;
   std::vector<Fix> fixes;
-  report["warnings"] = warnings(formed, o, placed.V.col(2).maxCoeff(), watertight, fixes);
+  report["warnings"] = warnings(formed, o, placed.V.col(2).maxCoeff(), watertight, crossings, fixes);
   report["fixes"] = fixes_json(fixes);
   return result;
 }

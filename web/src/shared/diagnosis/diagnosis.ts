@@ -82,8 +82,9 @@ export interface Diagnosis {
     readonly calibrated: number;
     readonly extended: number;
   }[];
-  /** What the simulation was extended by before causes were looked for. */
+  /** What the simulation was extended by before causes were looked for, and what would make it better still. */
   readonly extensions: readonly {
+    readonly included: boolean;
     readonly explanation: string;
     readonly remedy: string;
     readonly before_mm: number;
@@ -191,8 +192,9 @@ export function readDiagnosis(report: Report): Diagnosis {
       extended: number(parameter['extended']),
     })),
     extensions: list(report['simulation'])
-      .filter((one) => one['taken'] === true)
+      .filter((one) => one['taken'] === true || one['advised'] === true)
       .map((one) => ({
+        included: one['taken'] === true,
         explanation: text(one['explanation']),
         remedy: text(one['remedy']),
         before_mm: number(one['error_before_mm']),

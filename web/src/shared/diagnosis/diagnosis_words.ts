@@ -17,11 +17,15 @@ export function whyWords(diagnosis: Diagnosis): string {
   return [...sentences, readingWords(diagnosis)].filter(Boolean).join(' ');
 }
 
-/** One sentence or two for each thing that the simulation left out and now includes. */
+/** Some sentences for each thing that the simulation left out and now includes, or could include. */
 export const extensionWords = ({ extensions }: Diagnosis): string[] =>
   extensions.map(
-    ({ explanation, remedy, before_mm, after_mm }) =>
-      `${explanation} Our usual simulation leaves that out; it is included here, and the calibrated error is ${length(after_mm)} instead of ${length(before_mm)}. ${remedy}`,
+    ({ included, explanation, remedy, before_mm, after_mm }) =>
+      `${explanation} ${
+        included
+          ? 'Our usual simulation leaves that out; it is included here, and the calibrated error'
+          : 'It is not included here, since it takes longer: with it and nothing else changed, the error'
+      } is ${length(after_mm)} instead of ${length(before_mm)}. ${remedy}`,
   );
 
 const gainWords = ({ unseen, before, after }: Gain): string =>

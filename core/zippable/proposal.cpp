@@ -13,6 +13,7 @@
 #include "base/parallel.h"
 #include "geometry/paths/geodesic_distance.h"
 #include "zippable/parts/handles.h"
+#include "zippable/parts/limb_tips.h"
 #include "zippable/parts/slit.h"
 #include "zippable/parts/surface_split.h"
 #include "zippable/curve/traversal.h"
@@ -32,70 +33,6 @@ Eigen::VectorXd valley_slowness(const TriangleMesh& mesh, const Adjacency& adjac
                                 Context& context) {
   const FeatureLines lines = find_features(mesh, adjacency, options.features, context);
   return 1 + 4 * (lines.valley_rad.array() / options.features.min_rad).min(4).square();
-}
-
-/// Mean distance to everywhere, from a few vertices spread over the surface, each standing for what is nearest to it.
-Eigen::VectorXd mean_distance(const TriangleMesh& mesh, const Adjacency& adjacency, Context& context) {
-  constexpr int samples = 14;
-  const int n = mesh.vertex_count();
-  std::vector<Eigen::VectorXd> distances;
-  Eigen::VectorXd nearest = Eigen::VectorXd::Constant(n, std::numeric_limits<double>::infinity());
-  int vertex = 0;
-  std::vector<int> owner(n, 0);
-  for (int i = 0; i < samples; ++i) {
-    context.check_cancelled();
-    distances.push_back(geodesic_distance_mm(mesh, adjacency, {vertex}));
-    for (int v = 0; v < n; ++v)
-      if (distances[i][v] < nearest[v]) nearest[v] = distances[i][v], owner[v] = i;
-    Eigen::Index farthest = 0;
-    if (!(nearest.maxCoeff(&farthest) > 0)) break;
-    vertex = static_cast<int>(farthest);
-  }
-  std::vector<double> weight(distances.size(), 0);
-  for (int f = 0; f < mesh.face_count(); ++f) {
-    const Vec3 a = mesh.V.row(mesh.F(f, 0)).transpose(), b = mesh.V.row(mesh.F(f, 1)).transpose(),
-               c = mesh.V.row(mesh.F(f, 2)).transpose();
-    for (int k = 0; k < 3; ++k) weight[owner[mesh.F(f, k)]] += (b - a).cross(c - a).norm();
-  }
-  Eigen::VectorXd mean = Eigen::VectorXd::Zero(n);
-  const double total = std::accumulate(weight.begin(), weight.end(), 0.0);
-  for (std::size_t i = 0; i < distances.size(); ++i) mean += weight[i] / total * distances[i];
-  return mean;
-}
-
-struct Tip {
-  int vertex, saddle;  // saddle: where the limb joins a higher one; -1 for the highest
-  double prominence;
-};
-
-/// Maxima of f by persistence: components of {f >= t} as t falls; the lower of two that meet ends.
-std::vector<Tip> prominent_maxima(const Adjacency& adjacency, const Eigen::VectorXd& f, double minimum) {
-  const int n = adjacency.vertex_count();
-  std::vector<int> order(n), parent(n, -1), top(n, -1);
-  std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [&](int a, int b) { return f[a] != f[b] ? f[a] > f[b] : a < b; });
-  const auto root = [&](int v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
-  };
-  std::vector<Tip> tips;
-  int last_saddle = -1;
-  for (const int v : order) {
-    parent[v] = v, top[v] = v;
-    for (const int w : adjacency.neighbours(v)) {
-      if (parent[w] < 0) continue;
-      int a = root(v), b = root(w);
-      if (a == b) continue;
-      if (f[top[a]] < f[top[b]]) std::swap(a, b);
-      if (const double prominence = f[top[b]] - f[v]; top[b] != v && prominence >= minimum)
-        tips.push_back({top[b], v, prominence}), last_saddle = v;
-      parent[b] = a;
-    }
-  }
-  const int highest = order.front();
-  tips.push_back({highest, last_saddle, f[highest] - f[order.back()]});
-  std::stable_sort(tips.begin(), tips.end(), [](const Tip& a, const Tip& b) { return a.prominence > b.prominence; });
-  return tips;
 }
 
 std::vector<Seed> find_seeds(const TriangleMesh& mesh, const Adjacency& adjacency, const ProposalOptions& options,
@@ -119,8 +56,8 @@ std::vector<Seed> find_seeds(const TriangleMesh& mesh, const Adjacency& adjacenc
       throw Error(ErrorCode::invalid_input, "segments", "One hole does not make a cylinder: give at least two.");
     return seeds;
   }
-  const Eigen::VectorXd mean = mean_distance(mesh, adjacency, context);
-  for (const Tip& tip : prominent_maxima(adjacency, mean, options.prominence * mean.maxCoeff())) {
+  const Eigen::VectorXd mean = mean_distance_mm(mesh, adjacency, context);
+  for (const LimbTip& tip : prominent_maxima(adjacency, mean, options.prominence * mean.maxCoeff())) {
     if (static_cast<int>(seeds.size()) >= std::max(options.parts_max, 2)) break;
     bool beside = adjacency.is_boundary_vertex(tip.vertex);
     for (const int w : adjacency.neighbours(tip.vertex)) beside |= adjacency.is_boundary_vertex(w);

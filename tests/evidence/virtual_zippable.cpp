@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "evidence/models/zippable/tucked_limbs.h"
 #include "zippable/zipping/made_pattern.h"
 
 namespace formwright::virtual_lab {
@@ -19,12 +20,24 @@ struct Zipped {
   Positions x;
 };
 
+int chosen_limb(const std::vector<RibbonLimb>& limbs, const HiddenMaking& making) {
+  const int count = static_cast<int>(limbs.size());
+  return making.tucked_limb ? std::min(count, 1 + static_cast<int>(*making.tucked_limb * count)) : 0;
+}
+
+RibbonPattern pattern_of_laboratory(const FlatDesign& design, Context& context) {
+  const RibbonDesign ribbon = ribbon_of(design);
+  return pattern_of(ribbon, finer * pattern_of(ribbon, 0, context).width_mm, context);
+}
+
 Zipped zip_up(const FlatDesign& design, const HiddenMaking& making, Context& context) {
   Zipped zipped;
-  const RibbonDesign ribbon = ribbon_of(design);
-  const double width_mm = pattern_of(ribbon, 0, context).width_mm;
-  zipped.designed = pattern_of(ribbon, finer * width_mm, context);
-  zipped.x = zipped_at_rest(zipped.designed, making.options, zipped.designed.predicted_mm, context).x;
+  zipped.designed = pattern_of_laboratory(design, context);
+  Positions start = zipped.designed.predicted_mm;
+  const std::vector<RibbonLimb> limbs = limbs_of(zipped.designed, context);
+  if (const int number = chosen_limb(limbs, making); number > 0)
+    start = tucked_in(start, limbs[static_cast<std::size_t>(number) - 1].limb);
+  zipped.x = zipped_at_rest(zipped.designed, making.options, start, context).x;
   MakingErrors before_sewing = making.options;
   before_sewing.more_gap_mm = before_sewing.seam_take_up_mm = 0;
   zipped.cut = made_pattern(zipped.designed, before_sewing);
@@ -55,8 +68,8 @@ ZippingOptions usual_cloth() {
 }
 
 std::vector<std::string> zippable_cause_names() {
-  return {"plan_scale", "cloth_stretch", "cloth_bias",  "kerf",       "zipper_gap",  "seam_take_up",
-          "stuffing",   "gravity",       "marks_scale", "tape_scale", "stiff_zipper"};
+  return {"plan_scale", "cloth_stretch", "cloth_bias",  "kerf",       "zipper_gap",   "seam_take_up",
+          "stuffing",   "gravity",       "marks_scale", "tape_scale", "stiff_zipper", "tucked_limb"};
 }
 
 void hide_cause(const std::string& cause, double level, double size_mm, double width_mm, std::mt19937& random,
@@ -76,7 +89,13 @@ void hide_cause(const std::string& cause, double level, double size_mm, double w
   else if (cause == "marks_scale") making.marks_scale += 0.02 * sign * some;
   else if (cause == "tape_scale") making.tape_scale += 0.02 * sign * some;
   else if (cause == "stiff_zipper") o.zipper_bending_n_mm2 += 3 * 2 * bending_of(o) * width_mm * some;
+  else if (cause == "tucked_limb") making.tucked_limb = std::uniform_real_distribution<double>(0, 1)(random);
   else throw std::invalid_argument("no such cause: " + cause);
+}
+
+int hidden_limb(const FlatDesign& design, const HiddenMaking& making) {
+  Context context;
+  return making.tucked_limb ? chosen_limb(limbs_of(pattern_of_laboratory(design, context), context), making) : 0;
 }
 
 HiddenMaking draw_making(std::mt19937& random) {

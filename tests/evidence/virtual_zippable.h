@@ -2,6 +2,7 @@
 #pragma once
 // Zipped objects with a known truth, measured with a tape and scanned: smaller triangles, another cloth and noise,
 // which a diagnosis does not know of.
+#include <optional>
 #include <random>
 #include <string>
 #include <vector>
@@ -13,6 +14,7 @@ namespace formwright::virtual_lab {
 struct HiddenMaking {
   ZippingOptions options;  // cloth, errors of making, stuffing, weight
   double marks_scale = 0, tape_scale = 0;
+  std::optional<double> tucked_limb;  // 0 to 1, of the limbs in the order in which the zipper comes to them
 };
 
 struct ZippableObservation {
@@ -32,6 +34,10 @@ std::vector<std::string> zippable_cause_names();
 /// `level`: 1 strong. Signs are drawn. `size_mm`, `width_mm`: of the design and its ribbon.
 void hide_cause(const std::string& cause, double level, double size_mm, double width_mm, std::mt19937& random,
                 HiddenMaking& making);
+
+/// The number of the limb that `making` turns inside out, counted from 1 along the zipper; 0: none, or there is no
+/// limb.
+int hidden_limb(const FlatDesign& design, const HiddenMaking& making);
 
 /// The usual cloth with a stiffness that nobody has measured, without any error.
 HiddenMaking draw_making(std::mt19937& random);

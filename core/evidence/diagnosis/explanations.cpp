@@ -190,6 +190,11 @@ void Explanations::refit() {
   }
   // A pair of which one does nothing is the other alone, found from another start.
   std::erase_if(hypotheses_, [&](const Hypothesis& h) { return h.causes.size() == 2 && !significant(h); });
+  double without = std::numeric_limits<double>::infinity();
+  for (const Hypothesis& h : hypotheses_)
+    if (h.causes.empty()) without = std::min(without, h.log_evidence);
+  for (Hypothesis& h : hypotheses_)
+    if (h.causes.size() == 1 && is_too_weak(h.causes.front(), h.u)) h.log_evidence = std::min(h.log_evidence, without);
   normalise(hypotheses_);
 }
 
@@ -238,10 +243,18 @@ double Explanations::movement(int cause, const Eigen::VectorXd& u) const {
   return std::sqrt(squares / std::max(count, 1.0));
 }
 
+bool Explanations::is_too_weak(int cause, const Eigen::VectorXd& u) const {
+  const Cause& own = model_.causes()[static_cast<std::size_t>(cause)];
+  double squares = 0;
+  for (const int p : own.parameters)
+    squares += std::pow(model_.parameters()[static_cast<std::size_t>(p)].value(u[p]), 2);
+  return squares < own.min_strength * own.min_strength;
+}
+
 std::vector<int> Explanations::causes_that_move(const std::vector<int>& causes, const Eigen::VectorXd& u) const {
   std::vector<int> moving;
   for (const int cause : causes)
-    if (movement(cause, u) > min_movement * model_.known_misfit()) moving.push_back(cause);
+    if (movement(cause, u) > min_movement * model_.known_misfit() && !is_too_weak(cause, u)) moving.push_back(cause);
   return moving;
 }
 

@@ -73,6 +73,8 @@ class Explanations {
   int cheap_simulations() const { return cheap_simulations_; }
   /// RMS movement, in the measurement's unit, that a cause makes at u.
   double movement(int cause, const Eigen::VectorXd& u) const;
+  /// A cause that is there or not (Cause::min_strength), and is not at u.
+  bool is_too_weak(int cause, const Eigen::VectorXd& u) const;
   /// Those of `causes` that do something at u: more than the model's own misfit could pass for.
   std::vector<int> causes_that_move(const std::vector<int>& causes, const Eigen::VectorXd& u) const;
   /// Every cause of it does something.

@@ -62,6 +62,7 @@ struct Cause {
   double gain_error = 0;  // standard deviation, as a share of its strength: how differently equally good simulations
                           // turn it into movement
   FaultOf fault_of = FaultOf::machine;
+  double min_strength = 0;  // of what is there or not: an explanation with less of it counts no more than none
 };
 
 /// What was measured of one object. `place` are coordinates on the object, in [0, 1] x [0, 1] about, by which

@@ -56,6 +56,7 @@ Json one_case(const std::string& cause, const std::string& shape, unsigned seed,
                {"flat", observation.flat_lengths},
                {"scan", observation.scan_points},
                {"tape_sigma_mm", observation.tape_sigma_mm}};
+  if (const int limb = hidden_limb(design, making); limb > 0) line["cause"] = "tucked_in_" + std::to_string(limb);
   const auto start = std::chrono::steady_clock::now();
   const ZippableModel model({make_zippable(shape, design, making, observation, random)}, context);
   SimulationBag bag(model);
@@ -91,6 +92,7 @@ Json one_case(const std::string& cause, const std::string& shape, unsigned seed,
   line["truth"]["zipper_bending_n_mm2"] = making.options.zipper_bending_n_mm2;
   line["truth"]["marks_scale"] = making.marks_scale;
   line["truth"]["tape_scale"] = making.tape_scale;
+  if (making.tucked_limb) line["truth"]["tucked_limb"] = hidden_limb(design, making);
   line["error_before_mm"] = d.held_out.before.mean;
   line["error_after_mm"] = d.held_out.after.mean;
   line["simulations"] = d.simulations;

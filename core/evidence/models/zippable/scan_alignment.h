@@ -6,6 +6,9 @@
 
 namespace formwright {
 
+/// Of ScannedShape::aligned from a start that is near.
+inline constexpr int rounds_of_alignment = 20;
+
 /// A shape whose points can be asked for: `mesh` oriented outwards.
 class ScannedShape {
  public:

@@ -27,6 +27,11 @@ struct Listed {
 /// (docs/evidence_zippable.md).
 constexpr double cloth_gain_error = 0.05;
 
+/// Of limbs that are turned inside out: what another mesh makes of the same limb (docs/evidence_zippable.md).
+constexpr double tucked_gain_error = 0.1;
+constexpr double min_tucked_share = 0.5;  // a limb is in or out
+constexpr double max_tucked_share = 1.5;
+
 std::vector<Listed> listed_causes(const MeasuredZippable& object, const RibbonPattern& pattern, double bending_n_mm) {
   constexpr double pascal_per_mpa = 1e6;
   // Stretches the cloth of a sphere as large as the object by about 1 %.
@@ -109,8 +114,10 @@ constexpr EqualSimulation equal_simulations[] = {{"finer_cloth", "Smaller triang
 
 }  // namespace
 
-void declare_zippable_parameters(const MeasuredZippable& object, const RibbonPattern& pattern,
-                                 std::vector<ModelParameter>& parameters, std::vector<Cause>& causes) {
+void declare_zippable_parameters(const std::vector<MeasuredZippable>& objects, const RibbonPattern& pattern,
+                                 std::vector<TuckableLimb>& tuckable, std::vector<ModelParameter>& parameters,
+                                 std::vector<Cause>& causes) {
+  const MeasuredZippable& object = objects.front();
   const std::vector<ParameterInfo> infos = describe_parameters<ZippingOptions>();
   const Json setup = write_parameters(object.setup);
   const auto add = [&](const Varied& varied, ParameterRole role, bool logarithmic) {
@@ -144,6 +151,23 @@ void declare_zippable_parameters(const MeasuredZippable& object, const RibbonPat
     cause.unit = parameters.back().unit;
     if (row.through_the_cloth) cause.gain_error = cloth_gain_error;
     causes.push_back(std::move(cause));
+  }
+  for (TuckableLimb& limb : tuckable) {
+    const std::string of_object = objects.size() > 1 ? std::to_string(limb.object + 1) + "_" : "",
+                      name = "tucked_in_" + of_object + std::to_string(limb.number);
+    limb.parameter =
+        add({name.c_str(), 0, max_tucked_share, 1, 1, "Turned inside out, share of the way", "of the way in"},
+            ParameterRole::effect, false);
+    causes.push_back({name,
+                      "Part " + limb.place + " turned inside out" +
+                          (objects.size() > 1 ? ": " + objects[static_cast<std::size_t>(limb.object)].name : ""),
+                      "This part was not pushed out after zipping: it lies turned inwards, and stays there by itself.",
+                      "Push it out from inside, with a stick or by stuffing it, and measure again.",
+                      {limb.parameter},
+                      "of the way in",
+                      tucked_gain_error,
+                      FaultOf::machine,
+                      min_tucked_share});
   }
   for (const EqualSimulation& equal : equal_simulations) {
     add({equal.name, 0, 1, 1, 1, equal.label}, ParameterRole::discrepancy, false);

@@ -12,23 +12,16 @@ namespace formwright {
 namespace {
 
 constexpr Eigen::Index max_scan_points = 1500;
-constexpr int rounds_of_alignment = 20;
 constexpr double finer_edge = 0.5;  // of the ribbon's width
 /// What the simulation is known to be off by without any fault, of the object's size.
 constexpr double known_misfit_share = 0.003;
-
-TriangleMesh shape_of(const RibbonPattern& pattern, const Positions& x) {
-  TriangleMesh mesh;
-  mesh.V = x;
-  mesh.F = pattern.flat.F;
-  return mesh;
-}
 
 bool has_scan(const MeasuredZippable& object) { return object.scan_mm.rows() > 0; }
 
 }  // namespace
 
-ZippableModel::ZippableModel(std::vector<MeasuredZippable> objects, Context& context) : objects_(std::move(objects)) {
+ZippableModel::ZippableModel(std::vector<MeasuredZippable> objects, Context& context, TuckedLimbs tucked_limbs)
+    : objects_(std::move(objects)) {
   for (std::size_t i = 0; i < objects_.size(); ++i) {
     const MeasuredZippable& object = objects_[i];
     const auto span = context.span(static_cast<double>(i) / static_cast<double>(objects_.size()),
@@ -44,69 +37,18 @@ ZippableModel::ZippableModel(std::vector<MeasuredZippable> objects, Context& con
     known_misfit_mm_ = std::max(known_misfit_mm_, known_misfit_share * prepared.pattern[0].size_mm);
     if (has_scan(object)) {
       prepared.scan_mm = evenly_chosen(object.scan_mm, max_scan_points);
-      const ScannedShape shape(shape_of(prepared.pattern[0], prepared.start[0]), object.scan_offset_mm());
+      const ScannedShape shape(cloth_mesh(prepared.pattern[0], prepared.start[0]), object.scan_offset_mm());
       prepared.scan_motion =
           shape.aligned(prepared.scan_mm, shape.found(prepared.scan_mm, context), rounds_of_alignment, context);
     }
     prepared_.push_back(std::move(prepared));
+    if (tucked_limbs == TuckedLimbs::are_causes) find_tuckable(static_cast<int>(i), context);
   }
-  declare_zippable_parameters(objects_.front(), prepared_.front().pattern[0], parameters_, causes_);
+  declare_zippable_parameters(objects_, prepared_.front().pattern[0], tuckable_, parameters_, causes_);
   for (int i = 0; i < static_cast<int>(objects_.size()); ++i) {
     if (!objects_[static_cast<std::size_t>(i)].lengths.empty()) add_lengths(i);
     if (has_scan(objects_[static_cast<std::size_t>(i)])) add_scan(i, context);
   }
-}
-
-void ZippableModel::add_lengths(int object) {
-  const MeasuredZippable& own = objects_[static_cast<std::size_t>(object)];
-  const RibbonPattern& pattern = prepared_[static_cast<std::size_t>(object)].pattern[0];
-  Measurement m;
-  m.name = own.name;
-  m.extent_mm = pattern.zipper_mm;
-  const auto n = static_cast<Eigen::Index>(own.lengths.size());
-  m.place.resize(n, 2);
-  m.measured.resize(n, 1);
-  m.sigma.resize(n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const MeasuredLength& length = own.lengths[static_cast<std::size_t>(i)];
-    // Lengths between neighbouring places are neighbours.
-    const int low = std::min(length.from.number, length.to.number),
-              high = std::max(length.from.number, length.to.number);
-    m.place.row(i) << low * own.marker_spacing_mm / pattern.zipper_mm, high * own.marker_spacing_mm / pattern.zipper_mm;
-    m.measured(i, 0) = length.length_mm;
-    m.sigma[i] = length.sigma_mm;
-    if (length.flat && std::abs(piece_turn(pattern, length.from, own.marker_spacing_mm) -
-                                piece_turn(pattern, length.to, own.marker_spacing_mm)) > 1e-6)
-      throw Error(ErrorCode::invalid_input, "object",
-                  own.name + ": lengths.csv: the flat length from mark " + std::to_string(length.from.number) + " to " +
-                      std::to_string(length.to.number) + " goes from one piece to another: measure within one piece.");
-  }
-  measurements_.push_back(std::move(m));
-  sources_.push_back({object, false});
-}
-
-void ZippableModel::add_scan(int object, const Context& context) {
-  const MeasuredZippable& own = objects_[static_cast<std::size_t>(object)];
-  const PreparedObject& prepared = prepared_[static_cast<std::size_t>(object)];
-  const RibbonPattern& pattern = prepared.pattern[0];
-  const Positions moved = prepared.scan_motion(prepared.scan_mm);
-  const PointDistance nearest(shape_of(pattern, prepared.start[0]));
-  Measurement m;
-  m.name = own.name + (own.lengths.empty() ? "" : ", scan");
-  const Eigen::RowVector3d low = pattern.flat.V.colwise().minCoeff();
-  m.extent_mm = (pattern.flat.V.colwise().maxCoeff() - low).maxCoeff();
-  m.place.resize(moved.rows(), 2);
-  m.measured = Eigen::MatrixXd::Zero(moved.rows(), 1);
-  m.sigma = Eigen::VectorXd::Constant(moved.rows(), own.scan_sigma_mm);
-  for (Eigen::Index i = 0; i < moved.rows(); ++i) {
-    if (i % 256 == 0) context.check_cancelled();
-    const NearestPoint near = *nearest.nearest(moved.row(i).transpose());
-    Eigen::RowVector3d flat = Eigen::RowVector3d::Zero();
-    for (int k = 0; k < 3; ++k) flat += near.barycentric[k] * pattern.flat.V.row(pattern.flat.F(near.face, k));
-    m.place.row(i) = (flat - low).head<2>() / m.extent_mm;
-  }
-  measurements_.push_back(std::move(m));
-  sources_.push_back({object, true});
 }
 
 double ZippableModel::value(const char* name, const Eigen::VectorXd& u) const {
@@ -162,11 +104,10 @@ ZippableModel::Rest ZippableModel::at_rest(int object, const Eigen::VectorXd& u,
   }
 }
 
-Eigen::MatrixXd ZippableModel::lengths_at(int object, const Eigen::VectorXd& u, const Context& context) const {
+Eigen::MatrixXd ZippableModel::lengths_of(int object, std::size_t which, const Positions& x,
+                                          const Eigen::VectorXd& u) const {
   const MeasuredZippable& own = objects_[static_cast<std::size_t>(object)];
-  const PreparedObject& prepared = prepared_[static_cast<std::size_t>(object)];
-  const RibbonPattern& pattern = prepared.pattern[finer_at(u) ? 1 : 0];
-  const Rest rest = at_rest(object, u, context);
+  const RibbonPattern& pattern = prepared_[static_cast<std::size_t>(object)].pattern[which];
   // Nothing is sewn yet where pieces lie flat.
   MakingErrors cut = options_at(object, u);
   cut.more_gap_mm = cut.seam_take_up_mm = 0;
@@ -196,9 +137,8 @@ Eigen::MatrixXd ZippableModel::lengths_at(int object, const Eigen::VectorXd& u, 
       lengths(i, 0) = flat.cloth_change.empty() ? across.norm() : (flat.cloth_change[triangle] * across).norm();
     } else {
       const auto zipped = [&](const ZipperMark& mark) {
-        return between(mark, [&](const SeamPair& pair) {
-          return Vec3(0.5 * (rest->row(pair.left) + rest->row(pair.right)).transpose());
-        });
+        return between(
+            mark, [&](const SeamPair& pair) { return Vec3(0.5 * (x.row(pair.left) + x.row(pair.right)).transpose()); });
       };
       lengths(i, 0) = (zipped(length.to) - zipped(length.from)).norm();
     }
@@ -211,7 +151,7 @@ Eigen::MatrixXd ZippableModel::distances_at(int object, const Eigen::VectorXd& u
   const PreparedObject& prepared = prepared_[static_cast<std::size_t>(object)];
   const Rest rest = at_rest(object, u, context);
   const double larger = 1 + value("tape_scale", u);
-  const ScannedShape shape(shape_of(prepared.pattern[finer_at(u) ? 1 : 0], larger * *rest), own.scan_offset_mm());
+  const ScannedShape shape(cloth_mesh(prepared.pattern[finer_at(u) ? 1 : 0], larger * *rest), own.scan_offset_mm());
   const RigidMotion motion = shape.aligned(prepared.scan_mm, prepared.scan_motion, rounds_of_alignment, context);
   // The scan's distances from the shape: a prediction is what a point that was measured at 0 is off by, the other way.
   return -shape.distances_mm(prepared.scan_mm, motion);
@@ -219,14 +159,19 @@ Eigen::MatrixXd ZippableModel::distances_at(int object, const Eigen::VectorXd& u
 
 Eigen::MatrixXd ZippableModel::predict(int measurement, const Eigen::VectorXd& u, const Context& context) const {
   const Source& source = sources_[static_cast<std::size_t>(measurement)];
-  Eigen::MatrixXd result =
-      source.scan ? distances_at(source.object, u, context) : lengths_at(source.object, u, context);
+  Eigen::MatrixXd result = source.scan
+                               ? distances_at(source.object, u, context)
+                               : lengths_of(source.object, finer_at(u) ? 1 : 0, *at_rest(source.object, u, context), u);
+  result += tucked_change(source, u, context);
   if (!result.allFinite()) throw Error(ErrorCode::could_not_solve, "", "The zipped cloth has no finite place there.");
   return result;
 }
 
 std::string ZippableModel::in_words(int cause, const std::vector<double>& values) const {
-  return zippable_cause_in_words(causes_[static_cast<std::size_t>(cause)].name, values);
+  const Cause& own = causes_[static_cast<std::size_t>(cause)];
+  for (const TuckableLimb& limb : tuckable_)
+    if (limb.parameter == own.parameters.front()) return "The part " + limb.place + " is turned inside out.";
+  return zippable_cause_in_words(own.name, values);
 }
 
 MakingProfile ZippableModel::profile_at(const Eigen::VectorXd& u) const {

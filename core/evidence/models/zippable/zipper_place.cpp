@@ -14,6 +14,8 @@ constexpr double same_turn_rad = 1e-6;
 
 }  // namespace
 
+TriangleMesh cloth_mesh(const RibbonPattern& pattern, const Positions& x) { return {x, pattern.flat.F}; }
+
 ZipperPlace zipper_place(const RibbonPattern& pattern, double along_mm) {
   const std::vector<SeamPair>& seams = pattern.seams;
   // Where a stretch of the zipper ends the next one begins at the same length.

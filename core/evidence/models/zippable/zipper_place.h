@@ -8,6 +8,9 @@
 
 namespace formwright {
 
+/// The cloth of a ribbon with its vertices at x.
+TriangleMesh cloth_mesh(const RibbonPattern& pattern, const Positions& x);
+
 /// Between two pairs of places that the zipper brings together.
 struct ZipperPlace {
   std::array<int, 2> pair{};  // indices into RibbonPattern::seams

@@ -87,7 +87,7 @@ OperationResult run_evidence_diagnose_zippable(const OperationCall& call, const 
   }
   if (!unseen.empty()) {
     const auto span = call.context.span(0.05, 0.08, "Simulating the validation object");
-    other = std::make_unique<const ZippableModel>(std::move(unseen), call.context);
+    other = std::make_unique<const ZippableModel>(std::move(unseen), call.context, TuckedLimbs::are_left_out);
   }
   SimulationBag bag(*model);
   Diagnosis diagnosis;

@@ -86,7 +86,7 @@ OperationResult run_evidence_plan_lengths(const OperationCall& call, const PlanL
   std::unique_ptr<const ZippableModel> model;
   {
     const auto span = context.span(0, 0.1, "Simulating the zipped shape");
-    model = std::make_unique<const ZippableModel>(std::vector{std::move(object)}, context);
+    model = std::make_unique<const ZippableModel>(std::vector{std::move(object)}, context, TuckedLimbs::are_left_out);
   }
   SimulationBag bag(*model);
   MeasuringPlanOptions options;

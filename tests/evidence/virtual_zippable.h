@@ -14,7 +14,7 @@ namespace formwright::virtual_lab {
 struct HiddenMaking {
   ZippingOptions options;  // cloth, errors of making, stuffing, weight
   double marks_scale = 0, tape_scale = 0;
-  std::optional<double> tucked_limb;  // 0 to 1, of the limbs in the order in which the zipper comes to them
+  std::optional<double> tucked_limb = {};  // 0 to 1, of the limbs in the order in which the zipper comes to them
 };
 
 struct ZippableObservation {

@@ -131,7 +131,7 @@ int main(int argc, char** argv) {
     else return std::fprintf(stderr, "There is no option %s.\n", argv[i]), 2;
   }
   std::vector<std::string> causes = zippable_cause_names();
-  causes.emplace_back("none");
+  causes.insert(causes.end() - 1, "none");  // the seed goes by the place in this list
   for (unsigned turn = 0; turn < a.seeds; ++turn)
     for (std::size_t c = 0; c < causes.size(); ++c) {
       if (!a.only.empty() && a.only != causes[c]) continue;

@@ -116,13 +116,14 @@ std::vector<Eigen::VectorXd> weights_about(const ForwardModel& model, const Pred
 struct Calibrated {
   const ForwardModel* model = nullptr;
   ParameterFit alone, with_causes;
+  std::vector<Eigen::VectorXd> weights;  // about the fit with all causes
 };
 
 /// By how much `other` raises the marginal likelihood. Both with the same weights: what passes for an outlier in one of
 /// them only because that one is wrong there counts in both.
 double log_evidence_gain(const Calibrated& before, const ForwardModel& other, const ParameterFit& other_with_causes) {
-  const std::vector<Eigen::VectorXd> own = weights_about(*before.model, before.with_causes.predictions),
-                                     others = weights_about(other, other_with_causes.predictions);
+  const std::vector<Eigen::VectorXd>& own = before.weights;
+  const std::vector<Eigen::VectorXd> others = weights_about(other, other_with_causes.predictions);
   std::vector<Precisions> precisions;
   for (std::size_t m = 0; m < own.size(); ++m)
     precisions.push_back(
@@ -159,9 +160,8 @@ std::optional<TriedExtension> one_look(const Calibrated& before, const Simulatio
 
 class Choosing {
  public:
-  Choosing(const ForwardModel& model, Context& context) : model_(model), context_(context) {
-    rounds_ = static_cast<int>(model.extensions().size());
-  }
+  Choosing(const ForwardModel& model, Context& context)
+      : model_(model), context_(context), rounds_(static_cast<int>(model.extensions().size())) {}
 
   SimulationChoice run();
 
@@ -191,6 +191,7 @@ class Choosing {
     });
     best_.with_causes = part(
         [&] { return fit_parameters(bag, with_causes(model_, softness_, best_.alone, causes_), context_, stage); });
+    best_.weights = weights_about(model_, best_.with_causes.predictions);
     choice_.simulations = bag.simulations();
     return true;
   }
@@ -254,7 +255,9 @@ class Choosing {
     }
     if (!leader) return false;
     choice_.tried[leading_place].taken = true;
-    best_ = {extensions[*leader].model, std::move(*fits[*leader]), std::move(*fits_with_causes[*leader])};
+    const ForwardModel& taken = *extensions[*leader].model;
+    best_ = {&taken, std::move(*fits[*leader]), std::move(*fits_with_causes[*leader]), {}};
+    best_.weights = weights_about(taken, best_.with_causes.predictions);
     return true;
   }
 

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "geometry/mesh/adjacency.h"
+#include "geometry/mesh/measures.h"
 #include "geometry/paths/geodesic_distance.h"
 #include "zippable/parts/limb_tips.h"
 
@@ -151,11 +152,7 @@ std::vector<Limb> find_limbs(const TriangleMesh& mesh, int max_count, Context& c
   if (mesh.vertex_count() == 0 || mesh.face_count() == 0) return {};
   const Adjacency adjacency(mesh);
   const Eigen::VectorXd mean = mean_distance_mm(mesh, adjacency, context);
-  double whole_mm2 = 0;
-  for (Eigen::Index f = 0; f < mesh.F.rows(); ++f) {
-    const Vec3 a = mesh.V.row(mesh.F(f, 0)), b = mesh.V.row(mesh.F(f, 1)), c = mesh.V.row(mesh.F(f, 2));
-    whole_mm2 += 0.5 * (b - a).cross(c - a).norm();
-  }
+  const double whole_mm2 = surface_area(mesh);
   std::vector<Limb> limbs;
   for (const LimbTip& tip : prominent_maxima(adjacency, mean, min_prominence * mean.maxCoeff())) {
     Limb limb;

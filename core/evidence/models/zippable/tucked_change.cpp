@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "base/statistics.h"
 #include "evidence/models/zippable/tucked_limbs.h"
 #include "evidence/models/zippable/zippable_model.h"
 #include "evidence/models/zippable/zipper_place.h"
@@ -14,13 +15,12 @@ namespace {
 
 constexpr std::size_t smaller_triangles = 1;  // of PreparedObject::pattern: large ones cannot follow the fold
 constexpr double stays_in = 0.5;              // of the way that it was put in by: at least so far is it inside at rest
-constexpr double clearly_worse = 1.5;         // of the lengths' mean error: a limb that makes it so is not simulated
+constexpr double clearly_worse = 1.5;         // times the lengths' errors: a limb that makes it so is not simulated
 constexpr double clearly_nearer = 0.8;        // of the distance: a scan is laid anew only where that fits better
 
 double typical_distance(const ScannedShape& shape, const Positions& scan_mm, const RigidMotion& motion) {
-  Eigen::VectorXd off = shape.distances_mm(scan_mm, motion).cwiseAbs();
-  std::nth_element(off.begin(), off.begin() + off.size() / 2, off.end());
-  return off[off.size() / 2];
+  const Eigen::VectorXd off = shape.distances_mm(scan_mm, motion).cwiseAbs();
+  return median(std::vector<double>(off.begin(), off.end()));
 }
 
 }  // namespace
@@ -33,14 +33,14 @@ void ZippableModel::find_tuckable(int object, Context& context) {
   const bool has_scan = own.scan_mm.rows() > 0;
   if (!has_scan && std::all_of(own.lengths.begin(), own.lengths.end(), [](const auto& l) { return l.flat; })) return;
   const std::vector<RibbonLimb> limbs = limbs_of(pattern, context);
-  const auto mean_error = [&](const Positions& x) {
+  const auto sum_of_errors = [&](const Positions& x) {
     const Eigen::MatrixXd lengths = lengths_of(object, smaller_triangles, x, {});
     double sum = 0;
     for (std::size_t i = 0; i < own.lengths.size(); ++i)
       sum += std::abs(lengths(static_cast<Eigen::Index>(i), 0) - own.lengths[i].length_mm);
     return sum;
   };
-  const double usual_error = has_scan ? 0 : mean_error(usual);
+  const double usual_error = has_scan ? 0 : sum_of_errors(usual);
   std::vector<Positions> moved(limbs.size());
   parallel_for(limbs.size(), 1, [&](std::size_t begin, std::size_t end) {
     Context quiet = context;
@@ -49,7 +49,7 @@ void ZippableModel::find_tuckable(int object, Context& context) {
       const Limb& limb = limbs[i].limb;
       const Positions put_in = tucked_in(pattern.predicted_mm, limb);
       const Positions mirrored = put_in - pattern.predicted_mm;
-      if (!has_scan && mean_error(usual + mirrored) > clearly_worse * usual_error) {
+      if (!has_scan && sum_of_errors(usual + mirrored) > clearly_worse * usual_error) {
         moved[i] = mirrored;
         continue;
       }

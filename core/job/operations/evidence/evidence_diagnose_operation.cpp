@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <cmath>
 
+#include "base/error.h"
 #include "base/format.h"
 #include "evidence/diagnosis/unseen.h"
 #include "evidence/models/thermoform/good_part.h"
@@ -114,6 +115,17 @@ std::string thickness_csv(const ThermoformModel& model, const Diagnosis& d, cons
   return "object,sheet_x_mm,sheet_y_mm,thickness_mm,sigma_mm,calibrated_mm,extended_mm,weight\n" + rows;
 }
 
+/// How often an object's sheet goes through itself at u; 0 where it has no answer there, as where u was found on a finer
+/// sheet.
+int crossings_of(const ThermoformModel& model, int object, const Eigen::VectorXd& u, Context& context) {
+  try {
+    return count_crossings(model.formed(object, u, context)->mesh, {}, context);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::could_not_solve) throw;
+    return 0;
+  }
+}
+
 OperationResult run_evidence_diagnose(const OperationCall& call, const DiagnoseOptions& o) {
   require_each_once(call, "measured.csv");
   ThermoformModelOptions options;
@@ -185,9 +197,7 @@ OperationResult run_evidence_diagnose(const OperationCall& call, const DiagnoseO
     report.notes.push_back("A sheet of " + std::to_string(o.triangles) +
                            " triangles did not decide it: looked at again on twice as many.");
   for (int i = 0; i < static_cast<int>(model.objects().size()); ++i)
-    if (const int crossings =
-            count_crossings(model.formed(i, diagnosis.extended.u, call.context)->mesh, {}, call.context);
-        crossings > 0)
+    if (const int crossings = crossings_of(model, i, diagnosis.extended.u, call.context); crossings > 0)
       report.notes.push_back(
           "Our simulation: the sheet of " + model.objects()[static_cast<std::size_t>(i)].name +
           " goes through itself (" + std::to_string(crossings) +

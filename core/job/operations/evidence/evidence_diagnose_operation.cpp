@@ -115,8 +115,8 @@ std::string thickness_csv(const ThermoformModel& model, const Diagnosis& d, cons
   return "object,sheet_x_mm,sheet_y_mm,thickness_mm,sigma_mm,calibrated_mm,extended_mm,weight\n" + rows;
 }
 
-/// How often an object's sheet goes through itself at u; 0 where it has no answer there, as where u was found on a finer
-/// sheet.
+/// How often an object's sheet goes through itself at u; 0 where it has no answer there, as where u was found on a
+/// finer sheet.
 int crossings_of(const ThermoformModel& model, int object, const Eigen::VectorXd& u, Context& context) {
   try {
     return count_crossings(model.formed(object, u, context)->mesh, {}, context);

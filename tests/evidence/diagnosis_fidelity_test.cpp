@@ -83,6 +83,7 @@ class SlidingToy : public ToyModel {
     return y;
   }
   const ForwardModel* finer() const override { return &fine; }
+  double mesh_error() const override { return 40; }
   void measure(const Eigen::VectorXd& u) {
     fine.measure(u, 0.05, 4);
     measurement() = fine.measurement();
@@ -123,16 +124,16 @@ TEST_CASE("Diagnosis.LooksAgainMoreFinelyAtWhatItCannotDecide") {
   CHECK(predict_unseen(other, model, d, context).gain.after.mean < 0.08);
 }
 
-TEST_CASE("Diagnosis.WhatIsDecidedIsNotLookedAtAgain") {
+TEST_CASE("Diagnosis.OfWhatIsDecidedTheAnswerAloneIsFittedMoreFinely") {
   SlidingToy model;
   Eigen::VectorXd truth = model.nominal();
   truth[2] = 0.5;
   model.measure(truth);
-  model.fine.asked = 0;
   const Diagnosis d = diagnosed(model);
-  CHECK_FALSE(d.looked_again);
-  CHECK(model.fine.asked == 0);
+  CHECK(d.looked_again);
   CHECK(d.verdict == std::vector<int>{0});
+  CHECK(std::count_if(d.causes.begin(), d.causes.end(), [](const CauseFinding& f) { return f.fitted; }) == 1);
+  CHECK_THAT(d.extended.u[2], WithinAbs(0.5, 0.02));
 }
 
 TEST_CASE("Diagnosis.DoesWithoutAFinerSimulationThatHasNoAnswer") {

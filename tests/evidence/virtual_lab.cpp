@@ -30,6 +30,32 @@ TriangleMesh frustum(const std::vector<Vec2>& polygon, const Vec2& centre, doubl
   return mesh;
 }
 
+/// Half an ellipsoid over the plate, its axes not along the plate's.
+TriangleMesh dome(double radius, double height) {
+  constexpr int around = 48, up = 16;
+  TriangleMesh mesh;
+  mesh.V.resize(around * up + 1, 3);
+  mesh.F.resize(around * (2 * up - 1), 3);
+  for (int j = 0; j < up; ++j)
+    for (int i = 0; i < around; ++i) {
+      const double polar = 0.5 * std::numbers::pi * j / up, angle = 2 * std::numbers::pi * i / around;
+      const double x = radius * std::cos(polar) * std::cos(angle), y = 0.8 * radius * std::cos(polar) * std::sin(angle);
+      mesh.V.row(j * around + i) << 0.8 * x - 0.6 * y, 0.6 * x + 0.8 * y, height * std::sin(polar);
+    }
+  mesh.V.row(around * up) << 0, 0, height;
+  Eigen::Index f = 0;
+  for (int j = 0; j < up; ++j)
+    for (int i = 0; i < around; ++i) {
+      const int own = j * around + i, next = j * around + (i + 1) % around;
+      if (j + 1 == up) mesh.F.row(f++) << own, next, around * up;
+      else {
+        mesh.F.row(f++) << own, next, next + around;
+        mesh.F.row(f++) << own, next + around, own + around;
+      }
+    }
+  return mesh;
+}
+
 }  // namespace
 
 TriangleMesh make_mould(Mould mould) {
@@ -51,6 +77,7 @@ TriangleMesh make_mould(Mould mould) {
                       {-60, -20},
                       {-20, -20}},
                      {0, 0}, 0.7, 45);
+    case Mould::dome: return dome(55, 45);
   }
   return {};
 }

@@ -2,6 +2,7 @@
 #pragma once
 // Measured objects with a known truth. They are made by another model than the one under diagnosis: a finer sheet,
 // shorter steps, another elastic law, a slower vacuum, other material constants, noise and outliers.
+#include <array>
 #include <random>
 #include <string>
 #include <vector>
@@ -10,8 +11,9 @@
 
 namespace formwright::virtual_lab {
 
-enum class Mould { pyramid, box, ridge, cross };
-inline constexpr const char* mould_names[] = {"pyramid", "box", "ridge", "cross"};
+enum class Mould { pyramid, box, ridge, cross, dome };
+inline constexpr std::array mould_names{"pyramid", "box", "ridge", "cross", "dome"};
+inline constexpr int drawn_moulds = 4;  // the first ones; the dome is asked for by name
 
 /// In machine coordinates, on the plate; about 100 mm wide and 40 to 60 mm high.
 TriangleMesh make_mould(Mould mould);

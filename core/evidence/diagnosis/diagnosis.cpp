@@ -361,8 +361,9 @@ class Diagnostician {
     }
   }
 
-  /// Causes that do the same as a named one as far as these data go. Where something stays unexplained, probabilities
-  /// do not separate such causes: what the simulation gets wrong decides between them.
+  /// Causes that do the same as a named one as far as these data go. Where something stays unexplained, or another mesh
+  /// could turn the balance, probabilities do not separate such causes: what the simulation gets wrong decides between
+  /// them.
   void find_twins() {
     const bool in_doubt = result_.doubtful();
     const GramByStructure gram =
@@ -375,7 +376,8 @@ class Diagnostician {
         const bool undecided = finding_of(other).probability > 0.15 * finding_of(named).probability;
         if (alike > inseparable_likeness || (undecided && alike > 0.5))
           result_.not_separable.push_back({named, other, alike});
-        if (in_doubt && alike > inseparable_likeness && result_.reading == Reading::cause)
+        const bool nearly = finding_of(named).log_evidence - finding_of(other).log_evidence < model_.mesh_error();
+        if ((in_doubt || nearly) && alike > inseparable_likeness && result_.reading == Reading::cause)
           result_.reading = Reading::cannot_separate;
         if (!undecided) continue;
         if (alike > 0.5 && result_.reading == Reading::cause) result_.reading = Reading::cannot_separate;
@@ -431,7 +433,7 @@ Diagnosis diagnose(SimulationBag& bag, const DiagnosisOptions& options, Context&
   const double seconds_calibration = watch.seconds();
   tried.screen();
   tried.refit();
-  const ForwardModel* const finer = tried.decided() ? nullptr : bag.model().finer();
+  const ForwardModel* const finer = bag.model().finer();
   Diagnosis result;
   int simulations = 0;
   if (finer != nullptr) {

@@ -47,7 +47,7 @@ struct HeldOutTrial {
 
 struct Diagnosis {
   Reading reading = Reading::none;
-  bool looked_again = false;           // decided on the model's finer self
+  bool looked_again = false;           // the answer is that of the model's finer self
   std::vector<std::string> doubts;     // sentences: why what is named may be wrong, or not all
   std::vector<int> verdict;            // causes, the strongest first
   std::vector<Answer> answers;         // most probable first: what verdict, table and sentence follow from

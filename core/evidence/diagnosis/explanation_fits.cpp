@@ -9,7 +9,8 @@
 namespace formwright {
 namespace {
 
-/// Times ForwardModel::linear_error(): about zero, linear models of a cause of one sign say little.
+constexpr double linear_error = 150;  // of log evidence: linear models, and fits after two steps, err by less
+/// Times that: about zero, linear models of a cause of one sign say little.
 constexpr double one_sided_error = 2;
 constexpr int judged_after = 2;                    // steps
 constexpr double usual_multiples[] = {0.5, 1, 2};  // of a usual strength, to start from
@@ -34,7 +35,7 @@ std::vector<FitInProgress> Explanations::fitted(std::vector<FitProblem> problems
     for (const Refit& r : refits_) lowest = std::min(lowest, r.fit.value);
     for (const FitInProgress& f : fits)
       if (f.has_answer()) lowest = std::min(lowest, f.fit().value);
-    return fit.promised() > lowest + model_.linear_error();
+    return fit.promised() > lowest + linear_error;
   });
   return fits;
 }
@@ -66,7 +67,7 @@ bool Explanations::cannot_lead(const std::vector<int>& causes) const {
   double fitted = -std::numeric_limits<double>::infinity();
   for (const Hypothesis& h : hypotheses_) fitted = std::max(fitted, h.log_evidence);
   const double leading = std::min(screened_.front().log_evidence, fitted);
-  return linear < leading - (has_one_sign(causes) ? one_sided_error : 1) * model_.linear_error();
+  return linear < leading - (has_one_sign(causes) ? one_sided_error : 1) * linear_error;
 }
 
 std::vector<Eigen::VectorXd> Explanations::strengths_to_start_from(const std::vector<int>& causes) const {
@@ -111,7 +112,7 @@ std::optional<FitProblem> Explanations::problem_from_nominal(const std::vector<i
   }
   Hypothesis h = screened(causes, false);
   weigh(model_, about_nominal_, columns_, model_.nominal(), h);
-  if (h.log_evidence < screened_.front().log_evidence - one_sided_error * model_.linear_error()) return {};
+  if (h.log_evidence < screened_.front().log_evidence - one_sided_error * linear_error) return {};
   return problem(causes, {model_.nominal(), towards(model_, free, model_.nominal(), h.u)}, std::move(known), quick_fit);
 }
 

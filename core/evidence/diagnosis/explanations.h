@@ -34,12 +34,10 @@ class Explanations {
   /// Fits the likeliest causes in earnest, then pairs, then the leaders once more; fills hypotheses().
   void refit();
 
-  /// One explanation leads all others by far and leaves nothing.
-  bool decided() const;
   /// Mean distance of all points from the most probable explanation.
   double error() const;
-  /// Instead of the three: weighs what `coarse`, of a coarser simulation of the same data, has found likely or nearly
-  /// so, beginning from its fits. Fills everything. Throws Error{could_not_solve, cancelled}.
+  /// Instead of the three: weighs the answer of `coarse`, of a coarser simulation of the same data, or what it has
+  /// found nearly as likely, beginning from its fits. Fills everything. Throws Error{could_not_solve, cancelled}.
   void look_again(Explanations& coarse);
 
   const ParameterFit& base() const { return base_; }
@@ -114,6 +112,10 @@ class Explanations {
   bool cannot_lead(const std::vector<int>& causes) const;
   /// Those with the most log evidence first.
   std::vector<const Refit*> likeliest_refits() const;
+  /// One explanation leads all others by more than another mesh moves, and leaves nothing.
+  bool decided() const;
+  /// The answer alone where these decide it; else all that are in its reach.
+  std::vector<const Refit*> worth_looking_again() const;
   /// Once more where a coarser simulation has them, unless they are out of reach or do nothing there.
   void refit_as(const std::vector<const Refit*>& coarse);
   /// Polishes the likeliest `count` explanations, what they are parts of and have as parts, larger ones first.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a coarse simulation does not decide: its likeliest explanations, fitted once more by a finer one.
+// What a coarse simulation has found, fitted once more by a finer one: its answer, or where it does not decide, its
+// likeliest explanations.
 #include <algorithm>
 #include <limits>
 
@@ -11,7 +12,6 @@
 namespace formwright {
 namespace {
 
-constexpr double decisive = 40;            // of log evidence: meshes move it by less
 constexpr std::size_t polished_again = 1;  // beside none
 constexpr std::size_t max_again = 5;       // explanations with causes
 
@@ -28,7 +28,7 @@ bool Explanations::decided() const {
   // Where nothing is left to explain, no finer sheet finds a cause of it.
   if (best.causes.empty()) return true;
   return std::all_of(hypotheses_.begin(), hypotheses_.end(), [&](const Hypothesis& h) {
-    return h.causes == best.causes || h.log_evidence < best.log_evidence - decisive;
+    return h.causes == best.causes || h.log_evidence < best.log_evidence - model_.mesh_error();
   });
 }
 
@@ -48,6 +48,23 @@ std::vector<const Explanations::Refit*> Explanations::likeliest_refits() const {
   std::stable_sort(list.begin(), list.end(),
                    [&](const Refit* a, const Refit* b) { return evidence(*a) > evidence(*b); });
   return list;
+}
+
+std::vector<const Explanations::Refit*> Explanations::worth_looking_again() const {
+  if (decided()) {
+    const std::vector<int>& causes = hypotheses_.front().causes;
+    return causes.empty() ? std::vector<const Refit*>{} : std::vector<const Refit*>{&refit_of(causes)};
+  }
+  double best = plain_none(hypotheses_).log_evidence;
+  for (const Hypothesis& h : hypotheses_) best = std::max(best, h.log_evidence);
+  std::vector<const Refit*> near;
+  for (const Refit* r : likeliest_refits()) {
+    const bool in_reach = std::any_of(hypotheses_.begin(), hypotheses_.end(), [&](const Hypothesis& h) {
+      return h.causes == r->causes && h.log_evidence > best - out_of_reach;
+    });
+    if (!r->causes.empty() && in_reach && near.size() < max_again) near.push_back(r);
+  }
+  return near;
 }
 
 void Explanations::refit_as(const std::vector<const Refit*>& coarse) {
@@ -146,18 +163,9 @@ void Explanations::look_again(Explanations& coarse) {
   refits_.push_back(
       {fitted({problem({}, {base_.u, plain.fit.u}, plain.fit.sensitivities, quick_fit)}).front().fit(), {}, {}});
   weigh_refit(refits_.back());
-  double best = plain_none(coarse.hypotheses_).log_evidence;
-  for (const Hypothesis& h : coarse.hypotheses_) best = std::max(best, h.log_evidence);
-  std::vector<const Refit*> near;
-  for (const Refit* r : coarse.likeliest_refits()) {
-    const bool in_reach = std::any_of(coarse.hypotheses_.begin(), coarse.hypotheses_.end(), [&](const Hypothesis& h) {
-      return h.causes == r->causes && h.log_evidence > best - out_of_reach;
-    });
-    if (!r->causes.empty() && in_reach && near.size() < max_again) near.push_back(r);
-  }
   {
     const auto part = context_.span(0.1, 0.6, looking);
-    refit_as(near);
+    refit_as(coarse.worth_looking_again());
   }
   normalise(hypotheses_);
   {

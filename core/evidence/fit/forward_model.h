@@ -127,7 +127,7 @@ class ForwardModel {
   /// The same objects and parameters, simulated more coarsely and several times as fast, for searching; null where
   /// there is no such model.
   virtual const ForwardModel* cheaper() const { return nullptr; }
-  /// The same, simulated more finely, for what this one does not decide; null where there is no such model.
+  /// The same, simulated more finely, for the answer; null where there is no such model.
   virtual const ForwardModel* finer() const { return nullptr; }
   /// What it leaves out and could do. The models live as long as this one.
   virtual std::vector<SimulationExtension> extensions() const { return {}; }
@@ -140,8 +140,8 @@ class ForwardModel {
   /// Structured misfit (in the measurement's unit) beyond which part of it counts as unexplained. Right causes leave
   /// none, or the next smaller size of those that are considered.
   virtual double max_misfit_left() const { return max_share_left * known_misfit(); }
-  /// Log evidence that linear models, and fits that have made two steps, are not wrong by.
-  virtual double linear_error() const { return 150; }
+  /// Log evidence that another mesh moves; 0 where the model has none.
+  virtual double mesh_error() const { return 0; }
 
   std::vector<int> parameters_with(ParameterRole role) const;
   /// `parameter` belongs to one of `causes`.

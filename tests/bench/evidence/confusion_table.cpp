@@ -26,7 +26,7 @@ using namespace formwright;
 using namespace formwright::virtual_lab;
 
 /// Raised whenever the diagnosis comes to answer differently: run_confusion_table.py asks older lines again.
-constexpr int engine = 19;
+constexpr int engine = 20;
 
 struct Arguments {
   unsigned seed = 1;
@@ -51,8 +51,8 @@ Json one_case(const std::vector<std::string>& hidden, double level, double sigma
   const HiddenWorld world = draw_world(random);
   std::vector<HiddenEffect> effects;
   for (const std::string& cause : hidden) effects.push_back(draw_effect(cause, level, random));
-  Mould mould = static_cast<Mould>(std::uniform_int_distribution<int>(0, 3)(random));
-  for (int m = 0; m < 4; ++m)
+  Mould mould = static_cast<Mould>(std::uniform_int_distribution<int>(0, drawn_moulds - 1)(random));
+  for (std::size_t m = 0; m < mould_names.size(); ++m)
     if (arguments.mould == mould_names[m]) mould = static_cast<Mould>(m);
   Observation observation;
   observation.sigma_mm = sigma;
@@ -87,7 +87,7 @@ Json one_case(const std::vector<std::string>& hidden, double level, double sigma
   const Diagnosis d = diagnose(bag, options, context);
   line["engine"] = engine;
   line["simulation"] = choice.taken();
-  line["mould"] = mould_names[static_cast<int>(mould)];
+  line["mould"] = mould_names[static_cast<std::size_t>(mould)];
   line["hidden"] = hidden;
   line["values"] = Json::array();
   for (const HiddenEffect& e : effects) line["values"].push_back(e.values);

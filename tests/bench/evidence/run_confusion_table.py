@@ -18,6 +18,9 @@ CAUSES = ("heating_gradient heating_centre slip anisotropy thickness_wedge cooli
           "print_scale print_stretch_x print_stretch_y scan_scale scan_stretch_x scan_stretch_y scan_stretch_z scan_rotation scan_shift").split()
 
 
+CLEAN_MOULDS = ("pyramid", "box", "ridge", "cross", "dome")
+
+
 def cases(repeat, pairs, clean):
     """(what the line will say, arguments) in order of worth."""
 
@@ -29,13 +32,13 @@ def cases(repeat, pairs, clean):
     for _ in range(repeat):
         yield from single(1, 0.05)
         yield from single(1, 0.15)
+        for k in range(clean // repeat):
+            noise, mould = (0.05, 0.15)[k % 2], CLEAN_MOULDS[k % 5]
+            yield ((mould,), 1, noise, False), ["--only", "none", "--mould", mould, "--levels", "1", "--noise", str(noise), "--no-pairs"]
         yield from single(1, 0.05, left_out=True)
         for _ in range(pairs // repeat):
             yield ("pair", 1, 0.05, False), ["--pairs", "1", "--levels", "1", "--noise", "0.05"]
         yield from single(0.5, 0.05)
-        for k in range(clean // repeat):
-            noise = (0.05, 0.15)[k % 2]
-            yield ((), 1, noise, False), ["--only", "none", "--levels", "1", "--noise", str(noise), "--no-pairs"]
         for level, noise in ((0.5, 0.15), (0.25, 0.05), (0.25, 0.15)):
             yield from single(level, noise)
 
@@ -55,7 +58,7 @@ def main():
     again = {line["seed"] for line in lines if line.get("engine", 1) == engine}
     for line in lines:
         hidden = tuple(line["hidden"])
-        key = "pair" if len(hidden) == 2 else hidden, line.get("level"), line.get("sigma_mm"), line.get("left_out", False)
+        key = "pair" if len(hidden) == 2 else hidden or (line.get("mould"),), line.get("level"), line.get("sigma_mm"), line.get("left_out", False)
         if line.get("engine", 1) == engine:
             done[key] += 1
         elif line["seed"] not in again and line["seed"] % 1000 == 1:  # the first of its call, as here

@@ -31,8 +31,12 @@ def is_named(case):
     return case["reading"] in ("cause", "cannot_separate")
 
 
+def without_doubt(case):
+    return case["reading"] == "cause" and not case["doubtful"]
+
+
 def wrong_without_doubt(case):
-    return case["reading"] == "cause" and not case["doubtful"] and names_wrongly(case)
+    return without_doubt(case) and names_wrongly(case)
 
 
 def number(value):
@@ -75,14 +79,14 @@ def by_mould(cases, clean):
 def doubts(cases):
     """Of what is named with and without doubt, how much is wrong."""
     print("\n## Is doubt right?\n\nOf the answers that name a cause, the share that names one that was not hidden.\n")
-    print("| answers | in doubt: wrong | without doubt: wrong |\n|---|---|---|")
+    print("| answers | in doubt, or a twin: wrong | without doubt: wrong |\n|---|---|---|")
     rows = [(mould, lambda c, mould=mould: c["mould"] == mould) for mould in sorted({c["mould"] for c in cases})]
     rows += [(f"noise {sigma} mm", lambda c, sigma=sigma: c["sigma_mm"] == sigma) for sigma in sorted({c["sigma_mm"] for c in cases})]
     rows += [("all", lambda c: True)]
     for label, belongs in rows:
         cells = []
-        for doubtful in (True, False):
-            asked = [c for c in cases if is_named(c) and bool(c["doubtful"]) == doubtful and belongs(c)]
+        for sure in (False, True):
+            asked = [c for c in cases if is_named(c) and without_doubt(c) == sure and belongs(c)]
             cells.append(share([c for c in asked if names_wrongly(c)], asked))
         print(f"| {label} | " + " | ".join(cells) + " |")
 
@@ -158,7 +162,7 @@ Causes were hidden in virtual objects and diagnosed. `score_confusion_table.py` 
     every = [c for c in single if visible(c)]
     print(f"| one hidden cause: another one named, without doubt | {share([c for c in single if wrong_without_doubt(c)], single)} |")
     print(f"| nothing hidden: something named, or unknown | {share([c for c in clean if c['reading'] != 'none'], clean)} |")
-    print(f"| hidden cause is not in the list: unknown, none or in doubt | {share([c for c in missing if c['reading'] != 'cause' or c['doubtful']], missing)} |")
+    print(f"| hidden cause is not in the list: unknown, none or in doubt | {share([c for c in missing if not without_doubt(c)], missing)} |")
     shown = [c for c in pairs if visible(c)]
     both = [c for c in pairs if set(c["verdict"]) == set(c["hidden"])]
     print(f"| two strong causes: both named | {share(both, pairs)}; where both are visible {share([c for c in both if visible(c)], shown)} |")

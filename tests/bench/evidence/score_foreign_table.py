@@ -37,6 +37,10 @@ def answer(case):
     return said + (", in doubt" if case["doubtful"] else "") + (", or a twin" if case["reading"] == "cannot_separate" else "")
 
 
+def without_doubt(case):
+    return not case.get("doubtful", False) and case.get("reading") != "cannot_separate"
+
+
 def strength(case):
     return ", ".join(f"{name} {value:.3g}" for name, value in case.get("strength", {}).items()) or "nothing"
 
@@ -54,7 +58,7 @@ def table(title, groups):
         clean = [c for c in cases if c["cause"] == "none"]
         wrong = [c for c in listed if named(c) and not right(c)]
         alarms = [c for c in clean if c.get("reading") != "none"]
-        sure = lambda group: sum(not c.get("doubtful", False) for c in group)
+        sure = lambda group: sum(map(without_doubt, group))
         hits = [c for c in listed if right(c)]
         print(f"| {name} | {share_of(len(hits), len(listed))} | {share_of(sure(hits), len(listed))} | {share_of(len(wrong), len(listed))} | {share_of(sure(wrong), len(listed))} "
               f"| {share_of(len(alarms), len(clean))} | {share_of(sure(alarms), len(clean))} |")
@@ -80,14 +84,14 @@ Sheets that `tests/foreign_laboratory` formed, with a simulation of another kind
 [evidence.md](evidence.md#a-laboratory-of-another-kind) says what differs and which commands make this page.
 
 - All cases that were run are counted, whether the cause can be visible or not. Diagnoses that failed count as wrong. Shares have Wilson's 95 % interval [Wil27].
-- *Named first*: the verdict's first cause is the hidden one. *In doubt*: the report doubts its answer.
+- *Named first*: the verdict's first cause is the hidden one. *In doubt*: the report doubts its answer, or says that it cannot separate it from another cause (*or a twin*).
 - *Moved*: mean movement of the measured marks against the sheet of the same seed without fault.
 - Strengths are those of the laboratory (`tests/foreign_laboratory/faults.h`), ± is half the diagnosis's 95 % interval in its own unit.""")
     if not cases:
         print("\nNo case has been answered yet.")
         return
     meshes = sorted({c.get("triangles", 5000) for c in cases})
-    print(f"\nCases: {len(cases)}, {sum(c['cause'] == 'none' for c in cases)} of them clean. Triangles of the simulated sheet: {' or '.join(f'{n:,}' for n in meshes)}, and twice as many where a case was open.")
+    print(f"\nCases: {len(cases)}, {sum(c['cause'] == 'none' for c in cases)} of them clean. Triangles of the simulated sheet: {' or '.join(f'{n:,}' for n in meshes)}; strengths and errors are those of a sheet with twice as many.")
     table("All cases", by_mould(strong))
     seen = [c for c in strong if c["cause"] == "none" or visible(c)]
     table("Only causes that the answer lists as visible", [("every mould", seen)])
@@ -129,7 +133,7 @@ Sheets that `tests/foreign_laboratory` formed, with a simulation of another kind
 def tell_of_causes_in_no_list(cases):
     foreign = [c for c in cases if not c.get("in_the_list", True)]
     if foreign:
-        careful = sum(1 for c in foreign if "error" not in c and (not named(c) or c["doubtful"]))
+        careful = sum(1 for c in foreign if "error" not in c and (not named(c) or not without_doubt(c)))
         names = ", ".join(f"`{name}`" for name in sorted({c["cause"] for c in foreign}))
         print(f"\nCauses that are in no list ({names}): unknown, none or in doubt in {share_of(careful, len(foreign))}.")
 
@@ -160,8 +164,8 @@ def weaker_levels(cases):
         if not of:
             continue
         wrong = [c for c in of if named(c) and not right(c)]
-        sure = [c for c in of if right(c) and not c["doubtful"]]
-        surely_wrong = [c for c in wrong if not c["doubtful"]]
+        sure = [c for c in of if right(c) and without_doubt(c)]
+        surely_wrong = [c for c in wrong if without_doubt(c)]
         print(f"\nOf the same faults, {word} ({level:g} times as large), {share([c for c in of if right(c)], of)} are named first, {share(sure, of)} named and not in doubt; "
               f"for {share(wrong, of)} another cause is named, not in doubt for {share(surely_wrong, of)}.")
         tell_of_causes_in_no_list([c for c in cases if c["level"] == level])

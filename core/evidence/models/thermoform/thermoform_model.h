@@ -17,7 +17,7 @@
 namespace formwright {
 
 struct ThermoformModelOptions {
-  int triangles = 5000;
+  int triangles = 2500;
   double step_mm = 0.6;                 // automatic steps are longer, and their noise drowns what small changes do
   bool fit_mould_place = false;         // as calibration does: the mould's place is a base parameter, no cause
   MachineProfile profile;               // what is known of the machine; empty where nothing is
@@ -53,8 +53,7 @@ class ThermoformModel : public ForwardModel {
   double known_misfit() const override { return (options_.good_parts ? 0.5 : 1) * misfit_mm; }
   /// Beside a good part as much as without: what a fault changes, the simulation gets no better.
   double max_misfit_left() const override { return max_share_left * misfit_mm; }
-  /// With half the misfit to allow for, the same distance is more log evidence: slip on a box was given up with 150.
-  double linear_error() const override { return options_.good_parts ? 300 : 150; }
+  double mesh_error() const override { return 40; }
   std::string in_words(int cause, const std::vector<double>& values) const override;
   /// On a quarter of the triangles, where that leaves enough of them.
   const ForwardModel* cheaper() const override { return cheaper_.get(); }

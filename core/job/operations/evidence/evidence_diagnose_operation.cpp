@@ -20,7 +20,7 @@ namespace {
 struct DiagnoseOptions {
   bool pairs = true;
   bool separate = true;
-  int triangles = 5000;
+  int triangles = 2500;
 
   static constexpr auto parameters = std::tuple{
       parameter("pairs", &DiagnoseOptions::pairs, "Two causes at once",
@@ -32,7 +32,7 @@ struct DiagnoseOptions {
           .group("Diagnosis"),
       parameter(
           "triangles", &DiagnoseOptions::triangles, "Triangles", unit::none, 500, 40000,
-          "Number of triangles in the simulated sheet. More are more accurate and take longer. If up to 5,000 give no clear answer, the diagnosis is repeated with twice as many.")
+          "Number of triangles in the sheet on which causes are searched. More are more accurate and take longer. Up to 5,000, the answer is fitted once more on a sheet with twice as many.")
           .group("Diagnosis")
           .slider(1000, 10000)};
 };
@@ -194,8 +194,8 @@ OperationResult run_evidence_diagnose(const OperationCall& call, const DiagnoseO
     }
   }
   if (diagnosis.looked_again)
-    report.notes.push_back("A sheet of " + std::to_string(o.triangles) +
-                           " triangles did not decide it: looked at again on twice as many.");
+    report.notes.push_back("Searched with a sheet of " + std::to_string(o.triangles) +
+                           " triangles; strengths and errors are those of one with twice as many.");
   for (int i = 0; i < static_cast<int>(model.objects().size()); ++i)
     if (const int crossings = crossings_of(model, i, diagnosis.extended.u, call.context); crossings > 0)
       report.notes.push_back(

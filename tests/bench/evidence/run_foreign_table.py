@@ -118,7 +118,7 @@ def main():
     parser.add_argument("--seeds", type=int, default=1, help="rounds")
     parser.add_argument("--noise", type=float, default=0.1)
     parser.add_argument("--points", type=int, default=2000)
-    parser.add_argument("--triangles", type=int, default=5000, help="of the simulated sheet")
+    parser.add_argument("--triangles", type=int, default=2500, help="of the sheet on which causes are searched")
     parser.add_argument("--folder", type=pathlib.Path, help="keeps the objects and reports here; objects of the same seed, noise and points are not formed again")
     parser.add_argument("--jobs", type=int, default=1, help="cases at a time")
     parser.add_argument("--pairs", action="store_true", help="also looks for two causes at once, which takes twice as long")

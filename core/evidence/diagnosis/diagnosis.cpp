@@ -376,8 +376,9 @@ class Diagnostician {
         const bool undecided = finding_of(other).probability > 0.15 * finding_of(named).probability;
         if (alike > inseparable_likeness || (undecided && alike > 0.5))
           result_.not_separable.push_back({named, other, alike});
-        const bool nearly = finding_of(named).log_evidence - finding_of(other).log_evidence < model_.mesh_error();
-        if ((in_doubt || nearly) && alike > inseparable_likeness && result_.reading == Reading::cause)
+        const bool meshes_decide =
+            finding_of(named).log_evidence - finding_of(other).log_evidence < model_.mesh_error();
+        if ((in_doubt || meshes_decide) && alike > inseparable_likeness && result_.reading == Reading::cause)
           result_.reading = Reading::cannot_separate;
         if (!undecided) continue;
         if (alike > 0.5 && result_.reading == Reading::cause) result_.reading = Reading::cannot_separate;
@@ -414,13 +415,6 @@ class Diagnostician {
   std::vector<Eigen::VectorXd> before_;  // errors on held-out blocks without causes
 };
 
-double strength_at(const ForwardModel& model, int cause, const Eigen::VectorXd& u) {
-  double squares = 0;
-  for (const int p : model.causes()[static_cast<std::size_t>(cause)].parameters)
-    squares += std::pow(model.parameters()[static_cast<std::size_t>(p)].value(u[p]), 2);
-  return std::sqrt(squares);
-}
-
 /// Intervals of what is named, by what halving the triangles changes. Where the error falls with the square of the
 /// edges, which are longer by the root of two, the finer sheet is still as far from the truth as from the coarser one.
 void widen_by_mesh(Diagnosis& result, const Explanations& coarse, const Explanations& fine, const ForwardModel& model) {
@@ -429,8 +423,8 @@ void widen_by_mesh(Diagnosis& result, const Explanations& coarse, const Explanat
   if (causes.empty() || !coarse.is_refitted(causes) || !fine.is_refitted(causes)) return;
   for (CauseFinding& finding : result.causes) {
     if (std::find(causes.begin(), causes.end(), finding.cause) == causes.end()) continue;
-    const double moved = strength_at(model, finding.cause, fine.refit_of(causes).fit.u) -
-                         strength_at(model, finding.cause, coarse.refit_of(causes).fit.u);
+    const double moved = model.strength(finding.cause, fine.refit_of(causes).fit.u) -
+                         model.strength(finding.cause, coarse.refit_of(causes).fit.u);
     const double half = std::hypot(0.5 * (finding.high - finding.low), normal_quantile * moved);
     finding.low = finding.strength - half;
     finding.high = finding.strength + half;

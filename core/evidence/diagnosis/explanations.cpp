@@ -244,11 +244,7 @@ double Explanations::movement(int cause, const Eigen::VectorXd& u) const {
 }
 
 bool Explanations::is_too_weak(int cause, const Eigen::VectorXd& u) const {
-  const Cause& own = model_.causes()[static_cast<std::size_t>(cause)];
-  double squares = 0;
-  for (const int p : own.parameters)
-    squares += std::pow(model_.parameters()[static_cast<std::size_t>(p)].value(u[p]), 2);
-  return squares < own.min_strength * own.min_strength;
+  return model_.strength(cause, u) < model_.causes()[static_cast<std::size_t>(cause)].min_strength;
 }
 
 std::vector<int> Explanations::causes_that_move(const std::vector<int>& causes, const Eigen::VectorXd& u) const {

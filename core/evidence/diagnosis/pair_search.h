@@ -22,7 +22,6 @@ class AnchoredModel : public ForwardModel {
   const std::vector<Measurement>& measurements() const override { return cheap_.measurements(); }
   double known_misfit() const override { return cheap_.known_misfit(); }
   double max_misfit_left() const override { return cheap_.max_misfit_left(); }
-  double mesh_error() const override { return cheap_.mesh_error(); }
   bool claim(int object, const Eigen::VectorXd& u, const Context& context) const override {
     return cheap_.claim(object, u, context);
   }

@@ -15,6 +15,13 @@ double ModelParameter::coordinate(double value) const {
   return logarithmic ? std::log(std::max(value, 1e-6 * nominal) / nominal) : value - nominal;
 }
 
+double ForwardModel::strength(int cause, const Eigen::VectorXd& u) const {
+  double squares = 0;
+  for (const int p : causes()[static_cast<std::size_t>(cause)].parameters)
+    squares += std::pow(parameters()[static_cast<std::size_t>(p)].value(u[p]), 2);
+  return std::sqrt(squares);
+}
+
 bool ForwardModel::is_of(int parameter, const std::vector<int>& causes) const {
   return std::any_of(causes.begin(), causes.end(), [&](int cause) {
     const std::vector<int>& own = this->causes()[static_cast<std::size_t>(cause)].parameters;

@@ -42,8 +42,8 @@ export interface Look {
 
 /** Enough to see where a sheet is off, within seconds. */
 const quickTriangles = 2000;
-/** What runs have taken so far, to tell the time of the first one: simulations, and a worker's time as a share of the page's. */
-const usualSimulations = { diagnose: 400, pairs: 200, calibrate: 100 };
+/** What runs have taken so far, to tell the time of the first one: simulations (one on twice the triangles counts as two), and a worker's time as a share of the page's. */
+const usualSimulations = { diagnose: 600, pairs: 200, calibrate: 100 };
 const workerShare = 0.5;
 
 export class EvidenceSession extends RoomSession<EvidenceDocument> {

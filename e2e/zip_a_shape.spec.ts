@@ -267,16 +267,25 @@ test('a border around a limb by one line across it: pointer, two fingers, keyboa
 
   // A second one, whose line begins on the model, has not turned it; and it is one step to undo.
   const first = points(1).first();
-  // The direction from its first point across the ring: the picture may become smaller, for what is said below it.
-  const opposite = points(1).nth(Math.floor((await points(1).count()) / 2));
-  const direction_deg = async () => {
-    const [from, to] = [await first.boundingBox(), await opposite.boundingBox()];
-    return from && to ? (Math.atan2(to.y - from.y, to.x - from.x) * 180) / Math.PI : NaN;
+  // The direction from its first point to the one farthest from it, both as one frame shows them: the picture may
+  // become smaller meanwhile, for what is said below it.
+  const places = () =>
+    points(1).evaluateAll((buttons) =>
+      buttons.map((button) => button.getBoundingClientRect()).map(({ x, y }) => [x, y] as const),
+    );
+  const from = ([[x0, y0] = [0, 0]]: Awaited<ReturnType<typeof places>>) => (at: readonly [number, number] | undefined) =>
+    [(at?.[0] ?? NaN) - x0, (at?.[1] ?? NaN) - y0] as const;
+  const seen = await places();
+  const apart_px = seen.map((at) => Math.hypot(...from(seen)(at)));
+  const farthest = apart_px.indexOf(Math.max(...apart_px));
+  expect(apart_px[farthest]).toBeGreaterThan(20);
+  const direction_deg = (of: typeof seen) => {
+    const [x, y] = from(of)(of[farthest]);
+    return (Math.atan2(y, x) * 180) / Math.PI;
   };
-  const seen_deg = await direction_deg();
   await drag([0.66, 0.6], [0.76, 0.4]);
   await expect(page.getByText('Drawn by hand: 2 borders')).toBeVisible();
-  expect(Math.abs((await direction_deg()) - seen_deg)).toBeLessThan(3);
+  await expect.poll(async () => Math.abs(direction_deg(await places()) - direction_deg(seen))).toBeLessThan(3);
   await page.getByRole('button', { name: 'Undo: Draw a ring' }).click();
   await expect(page.getByText('Drawn by hand: 1 border', { exact: true })).toBeVisible();
 

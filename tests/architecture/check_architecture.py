@@ -25,6 +25,7 @@ CORE["job"] = set(CORE)
 # Narrower than their module: the engine that explains measurements knows crafts only as forward models.
 FOLDERS = {
     "evidence/fit": {"base", "numerics", "geometry"},
+    "evidence/explanations": {"base", "numerics", "geometry", "imaging"},
     "evidence/diagnosis": {"base", "numerics", "geometry", "imaging"},
 }
 # A folder holds about 20 files, tests of files included.

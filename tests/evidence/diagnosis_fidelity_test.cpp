@@ -13,7 +13,7 @@
 #include "base/error.h"
 #include "evidence/diagnosed.h"
 #include "evidence/diagnosis/diagnosis.h"
-#include "evidence/diagnosis/pair_search.h"
+#include "evidence/explanations/pair_search.h"
 #include "evidence/diagnosis/unseen.h"
 #include "evidence/toy_model.h"
 
@@ -134,43 +134,6 @@ TEST_CASE("Diagnosis.OfWhatIsDecidedTheAnswerAloneIsFittedMoreFinely") {
   CHECK(d.verdict == std::vector<int>{0});
   CHECK(std::count_if(d.causes.begin(), d.causes.end(), [](const CauseFinding& f) { return f.fitted; }) == 1);
   CHECK_THAT(d.extended.u[2], WithinAbs(0.5, 0.02));
-}
-
-/// A coarse mesh makes a bump a tenth too large, and is off everywhere by a little more than the finer one.
-class BumpOnAMesh : public ToyModel {
- public:
-  explicit BumpOnAMesh(double too_large) : ToyModel(500), too_large_(too_large), fine_(500) {}
-  Eigen::MatrixXd predict(int object, const Eigen::VectorXd& u, const Context& context) const override {
-    Eigen::VectorXd larger = u;
-    larger[2] *= 1 + too_large_;
-    Eigen::MatrixXd y = ToyModel::predict(object, larger, context);
-    y.col(1).array() += 0.02 * (20 * measurements().front().place.col(0).array()).sin();
-    return y;
-  }
-  const ForwardModel* finer() const override { return &fine_; }
-  void measure(const Eigen::VectorXd& u) {
-    fine_.measure(u, 0.05, 4);
-    measurement() = fine_.measurement();
-  }
-
- private:
-  double too_large_;
-  ToyModel fine_;
-};
-
-TEST_CASE("Diagnosis.IntervalsKnowWhatAnotherMeshChanges") {
-  const auto half_width = [](double too_large) {
-    BumpOnAMesh model(too_large);
-    Eigen::VectorXd truth = model.nominal();
-    truth[2] = 1;
-    model.measure(truth);
-    const Diagnosis d = diagnosed(model);
-    REQUIRE(d.verdict == std::vector<int>{0});
-    CHECK_THAT(d.causes.front().strength, WithinAbs(1, 0.03));
-    return 0.5 * (d.causes.front().high - d.causes.front().low);
-  };
-  constexpr double moved = 1 - 1 / 1.1;
-  CHECK_THAT(half_width(0.1), WithinAbs(std::hypot(half_width(0), 1.96 * moved), 0.03));
 }
 
 TEST_CASE("Diagnosis.DoesWithoutAFinerSimulationThatHasNoAnswer") {

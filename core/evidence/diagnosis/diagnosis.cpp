@@ -8,9 +8,11 @@
 #include <set>
 
 #include "base/error.h"
-#include "evidence/diagnosis/explanations.h"
-#include "evidence/diagnosis/fitted_strength.h"
+#include "evidence/explanations/explanations.h"
+#include "evidence/explanations/fitted_strength.h"
 #include "evidence/diagnosis/likeness.h"
+#include "evidence/diagnosis/strength_interval.h"
+#include "evidence/explanations/wide_secants.h"
 
 namespace formwright {
 namespace {
@@ -30,7 +32,9 @@ constexpr double inseparable_likeness = 0.9;
 constexpr const char* stays_unexplained = "Part of the misfit stays unexplained.";
 constexpr const char* nearly_as_likely = "Another explanation is nearly as likely.";
 constexpr const char* other_material = "The material would have to be far from what was measured before.";
-constexpr double surprising = 3;  // prior standard deviations
+constexpr double surprising = 3;      // prior standard deviations
+constexpr double max_refinement = 2;  // a factor of the fitted strength
+constexpr double max_worse = 1.25;    // the same of the held-out error
 
 class Diagnostician {
  public:
@@ -43,6 +47,8 @@ class Diagnostician {
     result_.noise = tried_.noise();
     result_.hypotheses = tried_.hypotheses();
     judge();
+    const auto span = context_.span(0.98, 1, measuring_strengths);
+    widen_by_other_simulations(result_, tried_, bag_, context_);
     return std::move(result_);
   }
 
@@ -65,11 +71,12 @@ class Diagnostician {
   }
 
   void judge() {
-    const auto span = context_.span(0.9, 1, "Predicting the held-out data");
+    const auto span = context_.span(0.9, 0.98, "Predicting the held-out data");
     find_causes();
     result_.unexplained_before = tried_.structure_left({});
     result_.extended = result_.base;
     find_answer();
+    refine_strengths();
     widen_by_model();
     before_ = held_out(result_.base).errors;
     measure_gain();
@@ -155,14 +162,55 @@ class Diagnostician {
     result_.trials.push_back({causes, large.size() == causes.size(), {}});
     if (large.size() < causes.size()) return FailedCheck{causes, large, Failure::too_small};
     if (!predicts_better(causes, without)) return FailedCheck{causes, {}, Failure::predicts_no_better};
-    result_.extended = recalibrated(tried_.refit_of(causes).fit);
+    const ParameterFit& fit = tried_.refit_of(causes).fit;
+    result_.extended = recalibrated(fit, {fit.u});
     checked_ = held_out(result_.extended);
-    widen_by_jackknife(causes);
+    for (const int cause : causes) widen_by_jackknife(model_, result_.extended, checked_.steps, finding_of(cause));
     const std::vector<int> shown = distinguishable_from_zero(causes);
     if (shown.size() == causes.size()) return {};
     result_.extended = result_.base;
     const bool imitated = causes.size() == 1 && !std::isfinite(finding_of(causes.front()).min_visible_strength);
     return FailedCheck{causes, shown, imitated ? Failure::like_the_material : Failure::near_zero};
+  }
+
+  /// What is named is as strong as one step on wide secants has it (wide_secants.h), unless that is far from the fit,
+  /// or predicts held-out data much worse: then the movement is no straight line up to there.
+  void refine_strengths() {
+    const std::vector<int>& causes = result_.verdict;
+    if (causes.empty()) return;
+    const ParameterFit& fit = tried_.refit_of(causes).fit;
+    const auto u = step_on_wide_secants(bag_, tried_, causes, {}, context_);
+    const auto is_far = [&](int cause) {
+      return std::abs(std::log(strength_factor(model_, cause, fit.u, *u))) > std::log(max_refinement);
+    };
+    if (!u || std::any_of(causes.begin(), causes.end(), is_far)) return;
+    Eigen::VectorXd causes_alone = *u;
+    for (const int p : model_.base_parameters()) causes_alone[p] = fit.u[p];
+    // Where a calibration leaps from the better start it may not from the other.
+    if (!extend_from(fit, {*u, causes_alone}) && !extend_from(fit, {*u}) && !extend_from(fit, {causes_alone})) return;
+    for (const int cause : causes) {
+      CauseFinding& finding = finding_of(cause);
+      const double half = half_width(finding);
+      set_values(finding, result_.extended.u);
+      set_half_width(finding, half);
+    }
+  }
+
+  /// False, and changes nothing, where the model has no answer, or held-out points are predicted much worse than by the
+  /// extended model so far.
+  bool extend_from(const ParameterFit& fit, std::vector<Eigen::VectorXd> starts) {
+    try {
+      ParameterFit extended = recalibrated(fit, std::move(starts));
+      HeldOut checked = held_out(extended);
+      const HeldOutGain gain = compare_distances(model_, checked_.errors, checked.errors);
+      if (gain.after.mean > max_worse * gain.before.mean) return false;
+      result_.extended = std::move(extended);
+      checked_ = std::move(checked);
+      return true;
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::could_not_solve) throw;
+      return false;
+    }
   }
 
   void weigh_answers() {
@@ -204,7 +252,7 @@ class Diagnostician {
     for (const int cause : causes) {
       const CauseFinding& finding = finding_of(cause);
       const bool can_be_shown = causes.size() > 1 || std::isfinite(finding.min_visible_strength);
-      if (can_be_shown && change(finding) > distinguishable_strength * half_width_with_model(finding))
+      if (can_be_shown && change(model_, finding) > distinguishable_strength * half_width_with_model(model_, finding))
         shown.push_back(cause);
     }
     return shown;
@@ -224,7 +272,7 @@ class Diagnostician {
     for (const int cause : result_.verdict) {
       const CauseFinding& finding = finding_of(cause);
       if (finding.probability < likely) doubt(nearly_as_likely);
-      if (change(finding) < plain_strength * 0.5 * (finding.high - finding.low))
+      if (change(model_, finding) < plain_strength * half_width(finding))
         doubt("Its strength is hardly distinguishable from zero.");
     }
   }
@@ -249,15 +297,13 @@ class Diagnostician {
     return std::max(1 - structure * structure, held_out);
   }
 
-  /// What was named stays; the base parameters are calibrated about it as those of the base model were.
-  ParameterFit recalibrated(const ParameterFit& fit) {
+  /// What was named stays as `starts` have it; the base parameters are calibrated about it as those of the base model
+  /// were, from the best of these.
+  ParameterFit recalibrated(const ParameterFit& fit, std::vector<Eigen::VectorXd> starts) {
     const std::vector<int> base = model_.base_parameters();
     ParameterFit result = fit_parameters(bag_,
-                                         {mean_distance_objective(model_, tried_.softness()),
-                                          base,
-                                          {fit.u},
-                                          sensitivities_of(base, fit.sensitivities, fit.free),
-                                          quick_fit},
+                                         {mean_distance_objective(model_, tried_.softness()), base, std::move(starts),
+                                          sensitivities_of(base, fit.sensitivities, fit.free), quick_fit},
                                          context_, fitting_stage);
     for (std::size_t a = result.free.size(); a < fit.free.size(); ++a) {
       result.free.push_back(fit.free[a]);
@@ -267,54 +313,26 @@ class Diagnostician {
     return result;
   }
 
-  /// Intervals of causes that are checked, by what leaving out a quarter of the data changes: that knows of misfits
-  /// that no prior has.
-  void widen_by_jackknife(const std::vector<int>& causes) {
-    for (const int cause : causes) {
-      CauseFinding& finding = *std::find_if(result_.causes.begin(), result_.causes.end(),
-                                            [&](const CauseFinding& f) { return f.cause == cause; });
-      const double variance =
-          beyond_noise(jackknife_deviation(model_, result_.extended, checked_.steps, cause, finding.values),
-                       finding.noise_deviation);
-      const double half = 0.5 * (finding.high - finding.low);
-      const double wider = std::sqrt(half * half + normal_quantile * normal_quantile * variance);
-      finding.low = finding.strength - wider;
-      finding.high = finding.strength + wider;
-    }
-  }
-
-  /// Intervals, by what the model itself does not know: the misfit that it is known to have can pass for half of what
-  /// is just visible (two of its standard deviations), and another simulation makes other movements of the same cause.
   void widen_by_model() {
-    for (CauseFinding& finding : result_.causes) {
-      if (!finding.fitted) continue;
-      const double half = half_width_with_model(finding);
-      finding.low = finding.strength - half;
-      finding.high = finding.strength + half;
-    }
-  }
-  double half_width_with_model(const CauseFinding& finding) const {
-    // What is just visible is four standard deviations.
-    const double misfit = std::isfinite(finding.min_visible_strength)
-                              ? 4 * beyond_noise(0.25 * finding.min_visible_strength, finding.noise_deviation)
-                              : 0;
-    const double gain =
-        normal_quantile * model_.causes()[static_cast<std::size_t>(finding.cause)].gain_error * change(finding);
-    return std::sqrt(std::pow(0.5 * (finding.high - finding.low), 2) + misfit + gain * gain);
+    for (CauseFinding& finding : result_.causes)
+      if (finding.fitted) set_half_width(finding, half_width_with_model(model_, finding));
   }
 
-  const CauseFinding& finding_of(int cause) const {
-    return *std::find_if(result_.causes.begin(), result_.causes.end(),
-                         [&](const CauseFinding& f) { return f.cause == cause; });
+  static auto& finding_in(auto& causes, int cause) {
+    return *std::find_if(causes.begin(), causes.end(), [&](const CauseFinding& f) { return f.cause == cause; });
   }
+  const CauseFinding& finding_of(int cause) const { return finding_in(result_.causes, cause); }
+  CauseFinding& finding_of(int cause) { return finding_in(result_.causes, cause); }
 
-  /// By how much the cause changes what set-up, profile and chosen simulation already have of it.
-  double change(const CauseFinding& finding) const {
-    const std::vector<int>& own = model_.causes()[static_cast<std::size_t>(finding.cause)].parameters;
-    double squares = 0;
-    for (std::size_t k = 0; k < own.size(); ++k)
-      squares += std::pow(finding.values[k] - model_.parameters()[static_cast<std::size_t>(own[k])].nominal, 2);
-    return std::sqrt(squares);
+  void set_values(CauseFinding& finding, const Eigen::VectorXd& u) const {
+    finding.values.clear();
+    for (const int p : model_.causes()[static_cast<std::size_t>(finding.cause)].parameters)
+      finding.values.push_back(model_.parameters()[static_cast<std::size_t>(p)].value(u[p]));
+    finding.strength =
+        finding.values.size() == 1
+            ? finding.values[0]
+            : Eigen::Map<const Eigen::VectorXd>(finding.values.data(), static_cast<Eigen::Index>(finding.values.size()))
+                  .norm();
   }
 
   void find_causes() {
@@ -339,13 +357,7 @@ class Diagnostician {
       finding.log_evidence = at->log_evidence - none;
       if (!tried_.is_refitted(at->causes)) {
         // Far behind the others: where the linearised model has it.
-        for (const int p : model_.causes()[static_cast<std::size_t>(cause)].parameters)
-          finding.values.push_back(model_.parameters()[static_cast<std::size_t>(p)].value(at->u[p]));
-        finding.strength = finding.values.size() == 1
-                               ? finding.values[0]
-                               : Eigen::Map<const Eigen::VectorXd>(finding.values.data(),
-                                                                   static_cast<Eigen::Index>(finding.values.size()))
-                                     .norm();
+        set_values(finding, at->u);
         finding.low = finding.high = finding.strength;
         result_.causes.push_back(finding);
         continue;
@@ -415,22 +427,6 @@ class Diagnostician {
   std::vector<Eigen::VectorXd> before_;  // errors on held-out blocks without causes
 };
 
-/// Intervals of what is named, by what halving the triangles changes. Where the error falls with the square of the
-/// edges, which are longer by the root of two, the finer sheet is still as far from the truth as from the coarser one.
-void widen_by_mesh(Diagnosis& result, const Explanations& coarse, const Explanations& fine, const ForwardModel& model) {
-  std::vector<int> causes = result.verdict;
-  std::sort(causes.begin(), causes.end());
-  if (causes.empty() || !coarse.is_refitted(causes) || !fine.is_refitted(causes)) return;
-  for (CauseFinding& finding : result.causes) {
-    if (std::find(causes.begin(), causes.end(), finding.cause) == causes.end()) continue;
-    const double moved = model.strength(finding.cause, fine.refit_of(causes).fit.u) -
-                         model.strength(finding.cause, coarse.refit_of(causes).fit.u);
-    const double half = std::hypot(0.5 * (finding.high - finding.low), normal_quantile * moved);
-    finding.low = finding.strength - half;
-    finding.high = finding.strength + half;
-  }
-}
-
 }  // namespace
 
 const char* reading_name(Reading reading) {
@@ -462,7 +458,6 @@ Diagnosis diagnose(SimulationBag& bag, const DiagnosisOptions& options, Context&
       // end early.
       if (again.error() <= tried.error()) {
         result = Diagnostician(fine_bag, again, context).run();
-        widen_by_mesh(result, tried, again, *finer);
         result.looked_again = true;
       }
     } catch (const Error& error) {

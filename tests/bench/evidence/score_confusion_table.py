@@ -11,6 +11,7 @@ import statistics
 
 import nearest_baseline
 from counted_shares import share
+from intervals import holds, off_by, with_interval
 
 named_level = {1: "strong", 0.5: "medium", 0.25: "weak"}
 
@@ -44,17 +45,25 @@ def number(value):
 
 
 def answer(case):
-    """What was named, with strength and half the width of its interval."""
+    """What was named, with strength and interval."""
     if case["reading"] in ("none", "unknown"):
         return case["reading"]
-    found = {name: f"{name} {number(abs(strength))} ± {number((high - low) / 2)}" for name, _, strength, low, high in case["causes"]}
+    found = {cause[0]: f"{cause[0]} {with_interval(*cause[2:5])}" for cause in case["causes"]}
     said = [found.get(name, name) for name in case["verdict"]]  # only the likeliest causes are kept
     return " and ".join(said) + (", in doubt" if case["doubtful"] else "") + (", or a twin" if case["reading"] == "cannot_separate" else "")
 
 
 def inside(case):
-    name, _, strength, low, high = case["causes"][0]
-    return abs(abs(strength) - case["strength"][0]) <= (high - low) / 2
+    return holds(*case["causes"][0][2:5], case["strength"][0])
+
+
+def strengths(cases):
+    """Of the causes that were named first, by the rules that found them."""
+    for level in sorted({c["level"] for c in cases}, reverse=True):
+        for engine in sorted({c.get("engine", 1) for c in cases if c["level"] == level}):
+            some = [c for c in cases if c["level"] == level and c.get("engine", 1) == engine]
+            off = statistics.median(off_by(c["causes"][0][2], c["strength"][0]) for c in some)
+            print(f"| {named_level.get(level, level)}, version {engine}: 95 % interval holds the hidden strength; strength off by (median) | {share([c for c in some if inside(c)], some)}; {100 * off:.0f} % |")
 
 
 def by_mould(cases, clean):
@@ -146,7 +155,7 @@ Causes were hidden in virtual objects and diagnosed. `score_confusion_table.py` 
 [evidence.md](evidence.md) says how the objects are made, what the causes mean, and which command makes this page.
 
 - A cause is *visible* if it is stronger than `min_visible_strength`, which the diagnosis computes without knowing the truth.
-- ± is half the width of the 95 % interval. Strengths are in the units of [thermoform.md](thermoform.md).
+- Behind a strength is its 95 % interval, without sign. Strengths are in the units of [thermoform.md](thermoform.md).
 - *In doubt*: the report doubts its answer and says why. *Or a twin*: another cause does nearly the same to these data. ✗: visible, but not what was named.
 - *Another object* is the mean error on an object that the diagnosis did not see, before and after the simulation is extended.
 """)
@@ -172,7 +181,7 @@ Causes were hidden in virtual objects and diagnosed. `score_confusion_table.py` 
         print(f"| error on another object, strong cause named | falls by {100 * statistics.median(gains):.0f} % (median), by half or more in {share([g for g in gains if g >= 0.5], gains)} |")
     if found:
         print(f"| found strength divided by hidden strength | {statistics.median(abs(c['causes'][0][2]) / c['strength'][0] for c in found):.2f} (median) |")
-        print(f"| 95 % interval holds the hidden strength | {share([c for c in found if inside(c)], found)} |")
+        strengths([c for c in single if right(c)])
     if cases:
         print(f"| seconds per diagnosis, one processor | {statistics.median(c['seconds'] for c in cases):.0f} (median); failed diagnoses: {len(failed)} |")
     by_cause = lambda c: (c["hidden"], c["sigma_mm"], c["seed"])

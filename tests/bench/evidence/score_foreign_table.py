@@ -5,10 +5,12 @@
 Of every case the last answer counts. Nothing is left out: failures count as not named, and on clean sheets as an alarm."""
 import argparse
 import json
+import math
 import statistics
 
 import nearest_baseline
 from counted_shares import share, share_of
+from intervals import holds, off_by, with_interval
 
 
 def named(case):
@@ -32,8 +34,7 @@ def answer(case):
     if not named(case):
         return case["reading"]
     found = {f["name"]: f for f in case["first"]}
-    said = " and ".join(f"{name} {abs(found[name]['strength']):.3g} ± {(found[name]['interval'][1] - found[name]['interval'][0]) / 2:.2g}" if name in found else name
-                        for name in named(case))
+    said = " and ".join(f"{name} {with_interval(found[name]['strength'], *found[name]['interval'])}" if name in found else name for name in named(case))
     return said + (", in doubt" if case["doubtful"] else "") + (", or a twin" if case["reading"] == "cannot_separate" else "")
 
 
@@ -86,7 +87,7 @@ Sheets that `tests/foreign_laboratory` formed, with a simulation of another kind
 - All cases that were run are counted, whether the cause can be visible or not. Diagnoses that failed count as wrong. Shares have Wilson's 95 % interval [Wil27].
 - *Named first*: the verdict's first cause is the hidden one. *In doubt*: the report doubts its answer, or says that it cannot separate it from another cause (*or a twin*).
 - *Moved*: mean movement of the measured marks against the sheet of the same seed without fault.
-- Strengths are those of the laboratory (`tests/foreign_laboratory/faults.h`), ± is half the diagnosis's 95 % interval in its own unit.""")
+- Strengths are those of the laboratory (`tests/foreign_laboratory/faults.h`). Behind a strength that was found is its 95 % interval, in the diagnosis's own unit and without sign.""")
     if not cases:
         print("\nNo case has been answered yet.")
         return
@@ -100,6 +101,7 @@ Sheets that `tests/foreign_laboratory` formed, with a simulation of another kind
     table("By cause", [(cause, [c for c in strong if c["cause"] == cause]) for cause in sorted({c["cause"] for c in strong} - {"none"})
                        if all(c.get("in_the_list", True) for c in strong if c["cause"] == cause)])
     tell_of_causes_in_no_list(strong)
+    strengths(strong)
     weaker_levels(cases)
     print_baselines("Baselines", strong)
     good = [c for c in cases if "error" not in c]
@@ -121,6 +123,7 @@ Sheets that `tests/foreign_laboratory` formed, with a simulation of another kind
         print("\nA sheet without fault over the same mould, of the same machine and plastic, was given as a good part (`--good-part`). It is of another day: another temperature, thickness, pump and "
               "mould, by as much as machines in order differ (`on_another_day` in `forming.h`), with marks and noise of its own.")
         tell_of_causes_in_no_list(strong)
+        strengths(strong)
         weaker_levels(beside)
         print_baselines("Baselines beside a good part", strong)
         list_answers("Every answer beside a good part", beside)
@@ -169,6 +172,17 @@ def weaker_levels(cases):
         print(f"\nOf the same faults, {word} ({level:g} times as large), {share([c for c in of if right(c)], of)} are named first, {share(sure, of)} named and not in doubt; "
               f"for {share(wrong, of)} another cause is named, not in doubt for {share(surely_wrong, of)}.")
         tell_of_causes_in_no_list([c for c in cases if c["level"] == level])
+
+
+def strengths(cases):
+    """Of causes that the laboratory hides in the unit that they are found in."""
+    found = [(c, c["first"][0], math.hypot(*c["strength"].values())) for c in cases
+             if right(c) and c["first"][0]["name"] == c["cause"] and c["first"][0]["values"].keys() == c["strength"].keys()]
+    if found:
+        off = statistics.median(off_by(first["strength"], hidden) for _, first, hidden in found)
+        inside = [c for c, first, hidden in found if holds(first["strength"], *first["interval"], hidden)]
+        print(f"\nOf the causes named first that the laboratory hides in the unit they are found in ({', '.join(sorted({c['cause'] for c, _, _ in found}))}), the 95 % interval holds the hidden strength in {share(inside, found)}; "
+              f"strengths are off by {100 * off:.0f} % (median).")
 
 
 def by_mould(cases):

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "evidence/diagnosis/pair_search.h"
+#include "evidence/explanations/pair_search.h"
 
 #include <algorithm>
 

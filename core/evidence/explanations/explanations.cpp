@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "evidence/diagnosis/explanations.h"
+#include "evidence/explanations/explanations.h"
 
 #include <algorithm>
 #include <cmath>

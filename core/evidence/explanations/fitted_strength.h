@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "evidence/diagnosis/explanations.h"
+#include "evidence/explanations/explanations.h"
 
 namespace formwright {
 

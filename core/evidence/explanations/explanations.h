@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "evidence/fit/hypotheses.h"
-#include "evidence/diagnosis/pair_search.h"
+#include "evidence/explanations/pair_search.h"
 #include "evidence/fit/structured_objective.h"
 
 namespace formwright {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "evidence/diagnosis/fitted_strength.h"
+#include "evidence/explanations/fitted_strength.h"
 
 #include <Eigen/Dense>
 #include <algorithm>

@@ -6,7 +6,7 @@
 
 #include "base/error.h"
 #include "evidence/calibration.h"
-#include "evidence/diagnosis/explanations.h"
+#include "evidence/explanations/explanations.h"
 #include "evidence/fit/free_fit.h"
 
 namespace formwright {

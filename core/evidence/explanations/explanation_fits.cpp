@@ -4,7 +4,7 @@
 #include <limits>
 #include <set>
 
-#include "evidence/diagnosis/explanations.h"
+#include "evidence/explanations/explanations.h"
 
 namespace formwright {
 namespace {

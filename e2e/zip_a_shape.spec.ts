@@ -273,8 +273,10 @@ test('a border around a limb by one line across it: pointer, two fingers, keyboa
     points(1).evaluateAll((buttons) =>
       buttons.map((button) => button.getBoundingClientRect()).map(({ x, y }) => [x, y] as const),
     );
-  const from = ([[x0, y0] = [0, 0]]: Awaited<ReturnType<typeof places>>) => (at: readonly [number, number] | undefined) =>
-    [(at?.[0] ?? NaN) - x0, (at?.[1] ?? NaN) - y0] as const;
+  const from =
+    ([[x0, y0] = [0, 0]]: Awaited<ReturnType<typeof places>>) =>
+    (at: readonly [number, number] | undefined) =>
+      [(at?.[0] ?? NaN) - x0, (at?.[1] ?? NaN) - y0] as const;
   const seen = await places();
   const apart_px = seen.map((at) => Math.hypot(...from(seen)(at)));
   const farthest = apart_px.indexOf(Math.max(...apart_px));
@@ -285,7 +287,9 @@ test('a border around a limb by one line across it: pointer, two fingers, keyboa
   };
   await drag([0.66, 0.6], [0.76, 0.4]);
   await expect(page.getByText('Drawn by hand: 2 borders')).toBeVisible();
-  await expect.poll(async () => Math.abs(direction_deg(await places()) - direction_deg(seen))).toBeLessThan(3);
+  await expect
+    .poll(async () => Math.abs(direction_deg(await places()) - direction_deg(seen)))
+    .toBeLessThan(3);
   await page.getByRole('button', { name: 'Undo: Draw a ring' }).click();
   await expect(page.getByText('Drawn by hand: 1 border', { exact: true })).toBeVisible();
 

@@ -33,6 +33,7 @@ void WorkPlaces::gave_up(const std::string& key) {
 
 void WorkPlaces::is_made_by(const std::string& machine, const std::string& key) {
   const std::scoped_lock lock(mutex_);
+  if (running_here_.contains(key)) return;  // two predictions of this run may need the same simulation
   running_elsewhere_[key] = machine;
 }
 

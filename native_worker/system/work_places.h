@@ -22,7 +22,7 @@ class WorkPlaces {
   /// Kept by this run; seconds since it began are handed to `on_made_here`.
   void made(const std::string& key);
   void gave_up(const std::string& key);
-  /// Another run of `machine` is at it.
+  /// Another run of `machine` is at it, unless this one has begun it.
   void is_made_by(const std::string& machine, const std::string& key);
   /// It is there; where another run was at it, that one has made it.
   void found(const std::string& key);

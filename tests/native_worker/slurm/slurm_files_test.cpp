@@ -167,7 +167,8 @@ TEST_CASE_METHOD(SlurmFolder, "WorkPlaces.SharedFolder") {
   write("");
   std::ofstream(path / "theirs.claim") << "lab-b 1";
   CHECK(host.claim_result("ours"));
-  CHECK_FALSE(host.claim_result("ours"));  // for a second prediction that needs the same simulation: no other run is at it
+  CHECK_FALSE(
+      host.claim_result("ours"));  // for a second prediction that needs the same simulation: no other run is at it
   CHECK_FALSE(host.claim_result("theirs"));
   host.on_progress({});
   REQUIRE(reported.size() == 2);

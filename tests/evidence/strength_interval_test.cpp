@@ -59,7 +59,7 @@ struct BumpFound {
 };
 
 BumpFound bump_found(double leap_mm) {
-  constexpr unsigned sheets = 6;
+  constexpr unsigned sheets = 3;
   BumpFound mean;
   for (unsigned seed = 1; seed <= sheets; ++seed) {
     const LeapingToy model = measured_with_a_bump(leap_mm, seed);

@@ -8,10 +8,10 @@
 #include <set>
 
 #include "base/error.h"
-#include "evidence/explanations/explanations.h"
-#include "evidence/explanations/fitted_strength.h"
 #include "evidence/diagnosis/likeness.h"
 #include "evidence/diagnosis/strength_interval.h"
+#include "evidence/explanations/explanations.h"
+#include "evidence/explanations/fitted_strength.h"
 #include "evidence/explanations/wide_secants.h"
 
 namespace formwright {

@@ -111,5 +111,30 @@ TEST_CASE("Diagnosis.TakesWhatACauseExplainsForNoOutliers") {
   CHECK_THAT(d.noise.front().sigma, WithinAbs(0.05, 0.005));
 }
 
+/// Three causes that are smooth over the object, one of them at work.
+Diagnosis of_dense_and_noisy_data(int parameter, double strength, unsigned seed) {
+  ToyModel model(3000, seed);
+  Eigen::VectorXd truth = model.nominal();
+  truth[parameter] = strength;
+  model.measure(truth, 0.3, seed);
+  return diagnosed(model);
+}
+
+TEST_CASE("Diagnosis.NamesInDoubtWhatAFieldWouldGuessFromTheNeighbours") {
+  const Diagnosis d = of_dense_and_noisy_data(2, 0.6, 3);
+  REQUIRE(d.verdict == std::vector<int>{0});
+  REQUIRE(d.trials.back().gain.gain_share < 0.01);  // else this is no such case
+  CHECK(d.held_out.gain_probability > 0.99);
+  CHECK_THAT(d.extended.u[2], WithinAbs(0.6, 0.1));
+  CHECK(d.doubtful());
+}
+
+TEST_CASE("Diagnosis.DenseAndNoisyDataWithoutFaultAreCalledClean") {
+  for (unsigned seed = 1; seed <= 6; ++seed) {
+    INFO("seed " << seed);
+    CHECK(of_dense_and_noisy_data(2, 0, seed).reading == Reading::none);
+  }
+}
+
 }  // namespace
 }  // namespace formwright

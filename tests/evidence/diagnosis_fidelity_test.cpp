@@ -20,6 +20,7 @@
 namespace formwright {
 namespace {
 using Catch::Matchers::WithinAbs;
+using evidence_test::check_one_answer;
 using evidence_test::diagnosed;
 using evidence_test::diagnosed_pair;
 using evidence_test::ToyModel;
@@ -122,6 +123,46 @@ TEST_CASE("Diagnosis.LooksAgainMoreFinelyAtWhatItCannotDecide") {
   other.measure(truth);
   Context context;
   CHECK(predict_unseen(other, model, d, context).gain.after.mean < 0.08);
+}
+
+/// What a coarse mesh does to a sheet that slides: at some strength it leaps, by about the right movement and, from
+/// point to point, by more than half of it. Its finer self is right.
+class LeapingToy : public ToyModel {
+ public:
+  LeapingToy() : ToyModel(500), fine(500) {}
+  Eigen::MatrixXd predict(int object, const Eigen::VectorXd& u, const Context& context) const override {
+    const double leap = u[3] > 0.1 ? 0.8 : 0.0;
+    Eigen::VectorXd leapt = u;
+    leapt[3] = leap;
+    Eigen::MatrixXd y = ToyModel::predict(object, leapt, context);
+    const Eigen::MatrixX2d& place = measurements().front().place;
+    y.col(1).array() += 0.6 * leap * (211 * place.col(0).array() + 307 * place.col(1).array()).sin();
+    return y;
+  }
+  const ForwardModel* finer() const override { return &fine; }
+  double mesh_error() const override { return 40; }
+  void measure(const Eigen::VectorXd& u) {
+    fine.measure(u, 0.05, 4);
+    measurement() = fine.measurement();
+  }
+  ToyModel fine;
+};
+
+TEST_CASE("Diagnosis.LooksAgainAtWhatTheDataLookLikeThoughItFitsWorseThanNone") {
+  LeapingToy model;
+  Eigen::VectorXd truth = model.nominal();
+  truth[3] = 0.9;
+  model.measure(truth);
+  SimulationBag bag(model);
+  Context context;
+  DiagnosisOptions options;
+  options.pairs = false;  // pairs are searched from starts that know the ripple
+  const Diagnosis d = diagnose(bag, options, context);
+  check_one_answer(d);
+  CHECK(d.looked_again);
+  REQUIRE(d.verdict == std::vector<int>{1});
+  CHECK_THAT(d.extended.u[3], WithinAbs(0.9, 0.02));
+  CHECK(d.doubts == std::vector<std::string>{});
 }
 
 TEST_CASE("Diagnosis.OfWhatIsDecidedTheAnswerAloneIsFittedMoreFinely") {

@@ -112,6 +112,26 @@ TEST_CASE("StrengthInterval.AFactorIsAlongTheCauseAndLimited") {
   CHECK(strength_factor(model, drift, from, 100 * from) == 10);
 }
 
+TEST_CASE("StrengthInterval.HoldsNothingImpossible") {
+  const ToyModel model(10);
+  CauseFinding finding;
+  const auto kept = [&](int cause, std::vector<double> values, double strength) {
+    finding.cause = cause;
+    finding.values = std::move(values);
+    finding.strength = strength;
+    set_half_width(finding, 10);
+    keep_in_range(model, finding);
+    return std::pair(finding.low, finding.high);
+  };
+  CHECK(kept(0, {1}, 1) == std::pair(-3.0, 3.0));            // the bump's range
+  CHECK(kept(1, {0.4}, 0.4) == std::pair(0.0, 3.0));         // a ripple is never negative
+  CHECK(kept(2, {0.3, -0.4}, 0.5) == std::pair(0.0, 10.5));  // a length of two
+  set_half_width(finding, 0.1);
+  keep_in_range(model, finding);
+  CHECK(finding.low == 0.4);
+  CHECK(finding.high == 0.6);
+}
+
 /// One that an equally good simulation moves a quarter more with.
 class BumpTwoWays : public ForwardModel {
  public:

@@ -8,7 +8,6 @@
 #include <set>
 
 #include "base/error.h"
-#include "evidence/diagnosis/likeness.h"
 #include "evidence/diagnosis/strength_interval.h"
 #include "evidence/explanations/explanations.h"
 #include "evidence/explanations/fitted_strength.h"
@@ -17,8 +16,6 @@
 namespace formwright {
 namespace {
 
-constexpr double explained_share =
-    0.5;  // of what the base model leaves unexplained (its variance) that a named cause must explain
 constexpr double likely = 0.5;
 constexpr double max_left =
     2;  // of the noise: with more left on held-out blocks a named cause is not all of it, or a relative of what it is
@@ -28,6 +25,7 @@ constexpr double distinguishable_strength = 1.5;  // the same: with some fifteen
 constexpr std::size_t max_failed = 3;             // checks, of answers that fail: more tries find more by chance
 constexpr double min_gain = 0.01;                 // of the held-out error
 constexpr double sure_gain = 0.8;                 // probability that there is one
+constexpr double certain_gain = 0.99;             // the same, where a field of unknown origin does as well
 constexpr double inseparable_likeness = 0.9;
 constexpr const char* stays_unexplained = "Part of the misfit stays unexplained.";
 constexpr const char* nearly_as_likely = "Another explanation is nearly as likely.";
@@ -49,6 +47,7 @@ class Diagnostician {
     judge();
     const auto span = context_.span(0.98, 1, measuring_strengths);
     widen_by_other_simulations(result_, tried_, bag_, context_);
+    for (CauseFinding& finding : result_.causes) keep_in_range(model_, finding);
     return std::move(result_);
   }
 
@@ -73,12 +72,13 @@ class Diagnostician {
   void judge() {
     const auto span = context_.span(0.9, 0.98, "Predicting the held-out data");
     find_causes();
+    measure_noise_floor();
+    before_ = held_out(result_.base).errors;
     result_.unexplained_before = tried_.structure_left({});
     result_.extended = result_.base;
     find_answer();
     refine_strengths();
     widen_by_model();
-    before_ = held_out(result_.base).errors;
     measure_gain();
     if (result_.verdict.empty()) {
       result_.reading = result_.answers.front().unknown_cause ? Reading::unknown : Reading::none;
@@ -150,21 +150,28 @@ class Diagnostician {
       }
       result_.verdict = top.causes;
       if (top.unknown_cause) doubt(stays_unexplained);
+      if (field_does_as_well_) doubt("A field of unknown origin would predict points that were left out as well.");
       return;
     }
   }
 
-  /// Each of `causes` moves points by more than the simulation's own error, together they predict better than none, and
-  /// each is distinguishable from zero. Empty where all hold.
+  /// Each of `causes` moves points by more than the simulation's own error, together they predict better than none or
+  /// explain most of what is held out, and each is distinguishable from zero. Empty where all hold.
   std::optional<FailedCheck> check(const std::vector<int>& causes, const std::vector<Eigen::VectorXd>& without) {
     if (!tried_.is_refitted(causes)) return FailedCheck{causes, {}, Failure::behind_failed};
     const std::vector<int> large = tried_.causes_that_move(causes, tried_.refit_of(causes).fit.u);
     result_.trials.push_back({causes, large.size() == causes.size(), {}});
     if (large.size() < causes.size()) return FailedCheck{causes, large, Failure::too_small};
-    if (!predicts_better(causes, without)) return FailedCheck{causes, {}, Failure::predicts_no_better};
+    field_does_as_well_ = !predicts_better(causes, without);
     const ParameterFit& fit = tried_.refit_of(causes).fit;
     result_.extended = recalibrated(fit, {fit.u});
     checked_ = held_out(result_.extended);
+    // A field of unknown origin may guess a left-out block from its neighbours as well as the cause has it. A cause
+    // that explains that block without a field is still one.
+    if (field_does_as_well_ && !explains_held_out(compare_distances(model_, before_, checked_.errors))) {
+      result_.extended = result_.base;
+      return FailedCheck{causes, {}, Failure::predicts_no_better};
+    }
     for (const int cause : causes) widen_by_jackknife(model_, result_.extended, checked_.steps, finding_of(cause));
     const std::vector<int> shown = distinguishable_from_zero(causes);
     if (shown.size() == causes.size()) return {};
@@ -277,24 +284,35 @@ class Diagnostician {
     }
   }
 
-  /// Far from one that was measured before.
+  /// Far from one that was measured before, and what is beyond moves points by more than the simulation's own error:
+  /// some parameters stand in for each other, and run far without doing anything.
   bool is_other_material(const Eigen::VectorXd& u) const {
     const std::vector<int> base = model_.base_parameters();
-    return std::any_of(base.begin(), base.end(), [&](int p) {
+    Eigen::VectorXd beyond = Eigen::VectorXd::Zero(u.size());
+    for (const int p : base) {
       const ModelParameter& parameter = model_.parameters()[static_cast<std::size_t>(p)];
-      return parameter.was_measured && std::abs(u[p]) > surprising * parameter.prior_sd;
-    });
+      if (parameter.was_measured)
+        beyond[p] = std::copysign(std::max(0.0, std::abs(u[p]) - surprising * parameter.prior_sd), u[p]);
+    }
+    return tried_.movement_by(base, beyond) > min_movement * model_.known_misfit();
   }
 
   /// Of what was unexplained (its variance): by the structure that is left, or, where that is beyond what is
   /// distinguished, by the error on held-out blocks above the noise.
   double share_explained() const {
     const double structure = result_.unexplained_after / std::max(result_.unexplained_before, 1e-12);
+    return std::max(1 - structure * structure, explained_on_held_out(result_.held_out));
+  }
+
+  bool explains_held_out(const HeldOutGain& gain) const {
+    return gain.gain_probability >= certain_gain && explained_on_held_out(gain) >= explained_share;
+  }
+
+  double explained_on_held_out(const HeldOutGain& gain) const {
     const double noise_squared = result_.noise_floor * result_.noise_floor;
-    const double before = std::pow(result_.held_out.before.mean, 2) - noise_squared,
-                 after = std::pow(result_.held_out.after.mean, 2) - noise_squared;
-    const double held_out = before > 0 ? 1 - std::max(0.0, after) / before : 0;
-    return std::max(1 - structure * structure, held_out);
+    const double before = std::pow(gain.before.mean, 2) - noise_squared,
+                 after = std::pow(gain.after.mean, 2) - noise_squared;
+    return before > 0 ? 1 - std::max(0.0, after) / before : 0;
   }
 
   /// What was named stays as `starts` have it; the base parameters are calibrated about it as those of the base model
@@ -339,7 +357,7 @@ class Diagnostician {
     const GramByStructure gram =
         tried_.misfit().gram(residuals(model_, result_.base.predictions),
                              side_by_side(tried_.sensitivities(), tried_.usual_sensitivities()));
-    const std::vector<double> like = likenesses(model_, gram);
+    const std::vector<double> like = tried_.likenesses();
     double none = -std::numeric_limits<double>::infinity();
     for (const Hypothesis& h : result_.hypotheses)
       if (h.causes.empty()) none = std::max(none, h.log_evidence);
@@ -403,16 +421,21 @@ class Diagnostician {
     result_.structure_after.clear();
     const Predictions left = residuals(model_, result_.base.predictions),
                       left_after = residuals(model_, result_.extended.predictions);
-    double sum = 0, count = 0;
     for (std::size_t object = 0; object < tried_.precisions().size(); ++object) {
       const Eigen::VectorXd weights = mean_weights(tried_.precisions()[object]);
       result_.structure_before.push_back(test_structure(model_.measurements()[object], left[object], weights));
       result_.structure_after.push_back(test_structure(model_.measurements()[object], left_after[object], weights));
+    }
+  }
+
+  void measure_noise_floor() {
+    double sum = 0, count = 0;
+    for (std::size_t object = 0; object < tried_.precisions().size(); ++object) {
       if (!model_.measurements()[object].is_place()) continue;
       const double d = static_cast<double>(model_.measurements()[object].measured.cols());
       // Mean length of a d-dimensional Gaussian.
       const double per_sigma = std::sqrt(2.0) * std::exp(std::lgamma(0.5 * (d + 1)) - std::lgamma(0.5 * d));
-      for (const double w : weights)
+      for (const double w : mean_weights(tried_.precisions()[object]))
         if (w > 0) sum += per_sigma * result_.noise[object].sigma, count += 1;
     }
     result_.noise_floor = count > 0 ? sum / count : 0;
@@ -424,6 +447,7 @@ class Diagnostician {
   Explanations& tried_;
   Diagnosis result_;
   HeldOut checked_;                      // of result_.extended
+  bool field_does_as_well_ = false;      // at what was checked last
   std::vector<Eigen::VectorXd> before_;  // errors on held-out blocks without causes
 };
 

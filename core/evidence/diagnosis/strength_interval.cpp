@@ -86,4 +86,15 @@ void widen_by_other_simulations(Diagnosis& result, const Explanations& tried, Si
   }
 }
 
+void keep_in_range(const ForwardModel& model, CauseFinding& finding) {
+  const std::vector<int>& own = model.causes()[static_cast<std::size_t>(finding.cause)].parameters;
+  if (own.size() > 1) {
+    finding.low = std::max(finding.low, 0.0);
+    return;
+  }
+  const ModelParameter& parameter = model.parameters()[static_cast<std::size_t>(own.front())];
+  finding.low = std::min(std::max(finding.low, parameter.low), finding.strength);
+  finding.high = std::max(std::min(finding.high, parameter.high), finding.strength);
+}
+
 }  // namespace formwright

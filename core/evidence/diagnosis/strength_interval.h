@@ -30,4 +30,7 @@ double half_width_with_model(const ForwardModel& model, const CauseFinding& find
 /// zero by that alone. `tried`: what was fitted with `bag`. Throws Error{cancelled}.
 void widen_by_other_simulations(Diagnosis& result, const Explanations& tried, SimulationBag& bag, Context& context);
 
+/// What is impossible is not in the interval: a parameter has a range, and a strength of several is their length.
+void keep_in_range(const ForwardModel& model, CauseFinding& finding);
+
 }  // namespace formwright

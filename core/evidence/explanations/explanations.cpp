@@ -7,6 +7,7 @@
 #include <set>
 
 #include "base/error.h"
+#include "evidence/explanations/likeness.h"
 #include "evidence/fit/free_fit.h"
 #include "evidence/fit/usual_strengths.h"
 
@@ -83,6 +84,10 @@ void Explanations::screen() {
 std::vector<Sensitivities> Explanations::usual_sensitivities() {
   if (coarser_ != nullptr) return coarser_->usual_sensitivities();
   return at_usual_strengths(bag_, at_nominal_, nominal_sensitivities_, context_, "Predicting the held-out data");
+}
+
+std::vector<double> Explanations::likenesses() const {
+  return formwright::likenesses(model_, misfit_->gram(residuals(model_, base_.predictions), sensitivities_));
 }
 
 void Explanations::weigh_screened() {
@@ -231,12 +236,15 @@ double Explanations::structure_left(const std::vector<int>& causes) const {
 double Explanations::softness() const { return largest_noise(model_, noise_); }
 
 double Explanations::movement(int cause, const Eigen::VectorXd& u) const {
+  return movement_by(model_.causes()[static_cast<std::size_t>(cause)].parameters, u);
+}
+
+double Explanations::movement_by(const std::vector<int>& parameters, const Eigen::VectorXd& u) const {
   double squares = 0, count = 0;
   for (std::size_t object = 0; object < sensitivities_.size(); ++object) {
     const Measurement& m = model_.measurements()[object];
     Eigen::MatrixXd field = Eigen::MatrixXd::Zero(m.measured.rows(), m.measured.cols());
-    for (const int p : model_.causes()[static_cast<std::size_t>(cause)].parameters)
-      field += u[p] * sensitivities_[object][static_cast<std::size_t>(p)];
+    for (const int p : parameters) field += u[p] * sensitivities_[object][static_cast<std::size_t>(p)];
     squares += field.squaredNorm();
     count += static_cast<double>(m.measured.rows());
   }

@@ -12,7 +12,9 @@ namespace formwright {
 
 inline constexpr const char* fitting_stage = "Fitting the causes";
 inline constexpr double min_movement = 0.5;  // of the known misfit, that a cause must make
-inline constexpr double out_of_reach = 60;   // log evidence that polishing, or a finer simulation, does not make up for
+/// Of what the base model leaves unexplained (its variance), that a named cause must explain.
+inline constexpr double explained_share = 0.5;
+inline constexpr double out_of_reach = 60;  // log evidence that polishing, or a finer simulation, does not make up for
 
 class Explanations {
  public:
@@ -52,6 +54,8 @@ class Explanations {
   /// what it does from there on to zero. Simulates these, on the coarser sheet where there is one. Throws
   /// Error{cancelled}.
   std::vector<Sensitivities> usual_sensitivities();
+  /// likenesses() to what the calibrated model leaves.
+  std::vector<double> likenesses() const;
   /// What may differ where `causes` and nothing else is at work.
   NuisanceParameters nuisances(const std::vector<int>& causes) const;
   /// The discrepancy parameters alone.
@@ -69,7 +73,9 @@ class Explanations {
   double softness() const;
   /// Simulations of the cheaper model.
   int cheap_simulations() const { return cheap_simulations_; }
-  /// RMS movement, in the measurement's unit, that a cause makes at u.
+  /// RMS movement, in the measurement's unit, that these parameters make at u.
+  double movement_by(const std::vector<int>& parameters, const Eigen::VectorXd& u) const;
+  /// The same of a cause.
   double movement(int cause, const Eigen::VectorXd& u) const;
   /// A cause that is there or not (Cause::min_strength), and is not at u.
   bool is_too_weak(int cause, const Eigen::VectorXd& u) const;
@@ -114,10 +120,18 @@ class Explanations {
   std::vector<const Refit*> likeliest_refits() const;
   /// One explanation leads all others by more than another mesh moves, and leaves nothing.
   bool decided() const;
-  /// The answer alone where these decide it; else all that are in its reach.
-  std::vector<const Refit*> worth_looking_again() const;
-  /// Once more where a coarser simulation has them, unless they are out of reach or do nothing there.
-  void refit_as(const std::vector<const Refit*>& coarse);
+  /// The cause that is most like what the calibrated model leaves, if it was refitted and, by its likeness, alone
+  /// explains enough of that to be named; else null.
+  const Refit* nearest() const;
+  struct Again {
+    std::vector<const Refit*> likely;  // the likeliest first; the others only where they are in reach
+    const Refit* nearest = nullptr;    // where it is none of these
+  };
+  /// The answer alone where these decide it; else all that are in its reach. Where a coarse sheet leaps, the cause that
+  /// is at work may fit it worse than none does: then it is still what the data look like.
+  Again worth_looking_again() const;
+  /// Once more where a coarser simulation has them, unless they do nothing there.
+  void refit_as(const Again& coarse);
   /// Polishes the likeliest `count` explanations, what they are parts of and have as parts, larger ones first.
   void polish_leaders(std::size_t count);
   /// The marginal likelihood of an explanation where its fit has it.

@@ -50,31 +50,42 @@ std::vector<const Explanations::Refit*> Explanations::likeliest_refits() const {
   return list;
 }
 
-std::vector<const Explanations::Refit*> Explanations::worth_looking_again() const {
+const Explanations::Refit* Explanations::nearest() const {
+  const std::vector<double> like = likenesses();
+  const auto most = std::max_element(like.begin(), like.end());
+  const std::vector<int> cause{static_cast<int>(most - like.begin())};
+  return *most * *most >= explained_share && is_refitted(cause) ? &refit_of(cause) : nullptr;
+}
+
+Explanations::Again Explanations::worth_looking_again() const {
   if (decided()) {
     const std::vector<int>& causes = hypotheses_.front().causes;
-    return causes.empty() ? std::vector<const Refit*>{} : std::vector<const Refit*>{&refit_of(causes)};
+    return causes.empty() ? Again{} : Again{{&refit_of(causes)}, nullptr};
   }
   double best = plain_none(hypotheses_).log_evidence;
   for (const Hypothesis& h : hypotheses_) best = std::max(best, h.log_evidence);
-  std::vector<const Refit*> near;
+  Again again;
   for (const Refit* r : likeliest_refits()) {
     const bool in_reach = std::any_of(hypotheses_.begin(), hypotheses_.end(), [&](const Hypothesis& h) {
       return h.causes == r->causes && h.log_evidence > best - out_of_reach;
     });
-    if (!r->causes.empty() && in_reach && near.size() < max_again) near.push_back(r);
+    if (!r->causes.empty() && in_reach && again.likely.size() < max_again) again.likely.push_back(r);
   }
-  return near;
+  const Refit* const alike = nearest();
+  if (std::find(again.likely.begin(), again.likely.end(), alike) == again.likely.end()) again.nearest = alike;
+  return again;
 }
 
-void Explanations::refit_as(const std::vector<const Refit*>& coarse) {
+void Explanations::refit_as(const Again& coarse) {
   struct Candidate {
     const Refit* refit;
     const ParameterFit* fit;
   };
+  std::vector<const Refit*> refits = coarse.likely;
+  if (coarse.nearest != nullptr) refits.push_back(coarse.nearest);
   std::vector<Candidate> candidates;
   std::vector<Eigen::VectorXd> starts;
-  for (const Refit* refit : coarse)
+  for (const Refit* refit : refits)
     for (const ParameterFit* fit : {&refit->fit, refit->alternative ? &*refit->alternative : nullptr}) {
       if (fit == nullptr || std::any_of(refit->causes.begin(), refit->causes.end(), [&](int cause) {
             return movement(cause, fit->u) <= min_movement * model_.known_misfit();
@@ -92,9 +103,9 @@ void Explanations::refit_as(const std::vector<const Refit*>& coarse) {
   const auto predictions = bag_.run(starts, context_, fitting_stage);
   std::vector<FitProblem> problems;
   std::vector<const Refit*> again;
-  for (const Refit* refit : coarse) {
-    double best_value =
-        refit == coarse.front() ? std::numeric_limits<double>::infinity() : refit_of({}).fit.value + out_of_reach;
+  for (const Refit* refit : refits) {
+    const bool in_any_case = refit == refits.front() || refit == coarse.nearest;
+    double best_value = in_any_case ? std::numeric_limits<double>::infinity() : refit_of({}).fit.value + out_of_reach;
     std::optional<FitProblem> best;
     for (std::size_t i = 0; i < candidates.size(); ++i) {
       if (candidates[i].refit != refit || !predictions[i]) continue;

@@ -7,6 +7,7 @@ A hidden cause is visible if it is stronger than `min_visible_strength`, which t
 import argparse
 import collections
 import json
+import math
 import statistics
 
 import nearest_baseline
@@ -115,6 +116,12 @@ def baselines(cases, clean):
               "On another object a field has nothing to say: its error there is that of the calibrated simulation.")
 
 
+def above(error_mm, case):
+    """Of a mean distance, what is more than the mean length of the noise: of a Gaussian with sigma in each of three coordinates."""
+    noise_mm = case["sigma_mm"] * math.sqrt(8 / math.pi)
+    return math.sqrt(max(0.0, error_mm**2 - noise_mm**2))
+
+
 def hidden(case):
     if not case["hidden"]:
         return "nothing"
@@ -176,9 +183,12 @@ Causes were hidden in virtual objects and diagnosed. `score_confusion_table.py` 
     both = [c for c in pairs if set(c["verdict"]) == set(c["hidden"])]
     print(f"| two strong causes: both named | {share(both, pairs)}; where both are visible {share([c for c in both if visible(c)], shown)} |")
     found = [c for c in every if right(c)]
-    gains = [1 - c["unseen_mm"][1] / c["unseen_mm"][0] for c in found if "unseen_mm" in c and c["level"] == 1]
+    unseen = [c for c in found if "unseen_mm" in c and c["level"] == 1]
+    gains = [1 - c["unseen_mm"][1] / c["unseen_mm"][0] for c in unseen]
     if gains:
         print(f"| error on another object, strong cause named | falls by {100 * statistics.median(gains):.0f} % (median), by half or more in {share([g for g in gains if g >= 0.5], gains)} |")
+        above_noise = [1 - above(c["unseen_mm"][1], c) / above(c["unseen_mm"][0], c) for c in unseen if above(c["unseen_mm"][0], c) > 0]
+        print(f"| the same above the noise of the measurement, which no simulation takes away (squares subtracted) | falls by {100 * statistics.median(above_noise):.0f} % (median), by half or more in {share([g for g in above_noise if g >= 0.5], above_noise)} |")
     if found:
         print(f"| found strength divided by hidden strength | {statistics.median(abs(c['causes'][0][2]) / c['strength'][0] for c in found):.2f} (median) |")
         strengths([c for c in single if right(c)])

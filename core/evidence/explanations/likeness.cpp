@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "evidence/diagnosis/likeness.h"
+#include "evidence/explanations/likeness.h"
 
 #include <Eigen/Dense>
 #include <algorithm>

@@ -111,7 +111,7 @@ TEST_CASE("Diagnosis.TakesWhatACauseExplainsForNoOutliers") {
   CHECK_THAT(d.noise.front().sigma, WithinAbs(0.05, 0.005));
 }
 
-/// Three causes that are smooth over the object, one of them at work.
+/// So many points, so noisy, that a smooth field predicts left-out blocks as well as a smooth cause does.
 Diagnosis of_dense_and_noisy_data(int parameter, double strength, unsigned seed) {
   ToyModel model(3000, seed);
   Eigen::VectorXd truth = model.nominal();

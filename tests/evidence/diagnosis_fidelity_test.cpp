@@ -127,9 +127,9 @@ TEST_CASE("Diagnosis.LooksAgainMoreFinelyAtWhatItCannotDecide") {
 
 /// What a coarse mesh does to a sheet that slides: at some strength it leaps, by about the right movement and, from
 /// point to point, by more than half of it. Its finer self is right.
-class LeapingToy : public ToyModel {
+class CoarselyLeapingToy : public ToyModel {
  public:
-  LeapingToy() : ToyModel(500), fine(500) {}
+  CoarselyLeapingToy() : ToyModel(500), fine(500) {}
   Eigen::MatrixXd predict(int object, const Eigen::VectorXd& u, const Context& context) const override {
     const double leap = u[3] > 0.1 ? 0.8 : 0.0;
     Eigen::VectorXd leapt = u;
@@ -149,7 +149,7 @@ class LeapingToy : public ToyModel {
 };
 
 TEST_CASE("Diagnosis.LooksAgainAtWhatTheDataLookLikeThoughItFitsWorseThanNone") {
-  LeapingToy model;
+  CoarselyLeapingToy model;
   Eigen::VectorXd truth = model.nominal();
   truth[3] = 0.9;
   model.measure(truth);

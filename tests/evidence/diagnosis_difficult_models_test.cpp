@@ -111,29 +111,19 @@ TEST_CASE("Diagnosis.TakesWhatACauseExplainsForNoOutliers") {
   CHECK_THAT(d.noise.front().sigma, WithinAbs(0.05, 0.005));
 }
 
-/// So many points, so noisy, that a smooth field predicts left-out blocks as well as a smooth cause does.
-Diagnosis of_dense_and_noisy_data(int parameter, double strength, unsigned seed) {
-  ToyModel model(3000, seed);
-  Eigen::VectorXd truth = model.nominal();
-  truth[parameter] = strength;
-  model.measure(truth, 0.3, seed);
-  return diagnosed(model);
-}
-
 TEST_CASE("Diagnosis.NamesInDoubtWhatAFieldWouldGuessFromTheNeighbours") {
-  const Diagnosis d = of_dense_and_noisy_data(2, 0.6, 3);
+  // So many points, so noisy, that a smooth field predicts left-out blocks as well as a smooth cause does.
+  ToyModel model(3000, 3);
+  Eigen::VectorXd truth = model.nominal();
+  truth[2] = 0.6;
+  model.measure(truth, 0.3, 3);
+  const Diagnosis d = diagnosed(model);
   REQUIRE(d.verdict == std::vector<int>{0});
   REQUIRE(d.trials.back().gain.gain_share < 0.01);  // else this is no such case
   CHECK(d.held_out.gain_probability > 0.99);
   CHECK_THAT(d.extended.u[2], WithinAbs(0.6, 0.1));
-  CHECK(d.doubtful());
-}
-
-TEST_CASE("Diagnosis.DenseAndNoisyDataWithoutFaultAreCalledClean") {
-  for (unsigned seed = 1; seed <= 6; ++seed) {
-    INFO("seed " << seed);
-    CHECK(of_dense_and_noisy_data(2, 0, seed).reading == Reading::none);
-  }
+  CHECK(std::count(d.doubts.begin(), d.doubts.end(),
+                   "A field of unknown origin would predict points that were left out as well.") == 1);
 }
 
 }  // namespace

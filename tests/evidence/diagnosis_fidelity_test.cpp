@@ -127,9 +127,8 @@ TEST_CASE("Diagnosis.LooksAgainMoreFinelyAtWhatItCannotDecide") {
 
 /// What a coarse mesh does to a sheet that slides: at some strength it leaps, by about the right movement and, from
 /// point to point, by more than half of it. Its finer self is right.
-class CoarselyLeapingToy : public ToyModel {
+class CoarselyLeapingToy : public SlidingToy {
  public:
-  CoarselyLeapingToy() : ToyModel(500), fine(500) {}
   Eigen::MatrixXd predict(int object, const Eigen::VectorXd& u, const Context& context) const override {
     const double leap = u[3] > 0.1 ? 0.8 : 0.0;
     Eigen::VectorXd leapt = u;
@@ -139,13 +138,6 @@ class CoarselyLeapingToy : public ToyModel {
     y.col(1).array() += 0.6 * leap * (211 * place.col(0).array() + 307 * place.col(1).array()).sin();
     return y;
   }
-  const ForwardModel* finer() const override { return &fine; }
-  double mesh_error() const override { return 40; }
-  void measure(const Eigen::VectorXd& u) {
-    fine.measure(u, 0.05, 4);
-    measurement() = fine.measurement();
-  }
-  ToyModel fine;
 };
 
 TEST_CASE("Diagnosis.LooksAgainAtWhatTheDataLookLikeThoughItFitsWorseThanNone") {

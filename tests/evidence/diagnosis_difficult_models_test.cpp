@@ -126,5 +126,25 @@ TEST_CASE("Diagnosis.NamesInDoubtWhatAFieldWouldGuessFromTheNeighbours") {
                    "A field of unknown origin would predict points that were left out as well.") == 1);
 }
 
+/// Few points, of which the bump explains a third above the noise.
+TEST_CASE("Diagnosis.WhereNothingIsLeftToExplainADoubtfulCauseNeedsHalfOfTheHeldOutError") {
+  for (const unsigned seed : {2u, 3u, 4u, 6u, 7u})
+    for (const bool is_structure : {true, false}) {
+      ToyModel model(60);
+      Eigen::VectorXd truth = model.nominal();
+      truth[2] = 0.13;
+      model.measure(truth, 0.05, seed);
+      // What the bump leaves on the sheet is structure to be explained, or no more than the model misses by itself.
+      model.set_max_misfit_left(is_structure ? 0.018 : 0.035);
+      const Diagnosis d = diagnosed(model);
+      CAPTURE(seed, d.unexplained_before);
+      REQUIRE((d.unexplained_before > model.max_misfit_left()) == is_structure);
+      CHECK(d.reading == (is_structure ? Reading::cause : Reading::none));
+      if (!is_structure)
+        CHECK(std::any_of(d.failed.begin(), d.failed.end(),
+                          [](const FailedCheck& f) { return f.failure == Failure::nothing_to_explain; }));
+    }
+}
+
 }  // namespace
 }  // namespace formwright

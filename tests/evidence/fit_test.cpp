@@ -285,5 +285,18 @@ TEST_CASE("Calibration.FitIsNoWorseThanTheGrid") {
   CHECK(fit.error <= grid.error + 1e-9);
 }
 
+TEST_CASE("SimulationBag.WhatIsMadeAheadCountsOnceItIsAskedFor") {
+  const ToyModel model(50);
+  SimulationBag bag(model);
+  Context context;
+  const Eigen::VectorXd wanted = model.nominal(), later = Eigen::VectorXd::Constant(wanted.size(), 0.1);
+  SimulationBag::run_together({&bag}, {{wanted}}, context, "", {{later}});
+  CHECK(bag.simulations() == 1);
+  CHECK(bag.run(later, context, "")->front() == model.predict(0, later, context));
+  CHECK(bag.simulations() == 2);
+  bag.run(later, context, "");
+  CHECK(bag.simulations() == 2);
+}
+
 }  // namespace
 }  // namespace formwright

@@ -132,10 +132,10 @@ TEST_CASE("StrengthInterval.HoldsNothingImpossible") {
   CHECK(finding.high == 0.6);
 }
 
-/// One that an equally good simulation moves a quarter more with.
+/// One that an equally good simulation moves more with, by this share.
 class BumpTwoWays : public ForwardModel {
  public:
-  BumpTwoWays() : toy_(500), parameters_(toy_.parameters()) {
+  explicit BumpTwoWays(double more) : toy_(500), parameters_(toy_.parameters()), more_(more) {
     ModelParameter p;
     p.name = p.label = "other law";
     p.role = ParameterRole::discrepancy;
@@ -149,7 +149,7 @@ class BumpTwoWays : public ForwardModel {
   double max_misfit_left() const override { return toy_.max_misfit_left(); }
   Eigen::MatrixXd predict(int object, const Eigen::VectorXd& u, const Context& context) const override {
     Eigen::VectorXd own = u.head(u.size() - 1);
-    own[bump_parameter] *= 1 + 0.25 * u[u.size() - 1];
+    own[bump_parameter] *= 1 + more_ * u[u.size() - 1];
     return toy_.predict(object, own, context);
   }
   void measure(double strength) {
@@ -161,11 +161,12 @@ class BumpTwoWays : public ForwardModel {
  private:
   ToyModel toy_;
   std::vector<ModelParameter> parameters_;
+  double more_;
 };
 
 TEST_CASE("StrengthInterval.ReachesWhatAnEquallyGoodSimulationFinds") {
   for (const double strength : {1.0, -1.0}) {
-    BumpTwoWays model;
+    BumpTwoWays model(0.25);
     model.measure(strength);
     const Diagnosis d = diagnosed(model);
     REQUIRE(d.verdict == bump_alone);
@@ -176,6 +177,17 @@ TEST_CASE("StrengthInterval.ReachesWhatAnEquallyGoodSimulationFinds") {
     CHECK_THAT(farther, WithinAbs(strength * factor, 0.05));
     CHECK_THAT(nearer, WithinAbs(strength / factor, 0.05));
   }
+}
+
+TEST_CASE("StrengthInterval.BeyondTwiceTheStrengthItIsADoubt") {
+  for (const double strength : {1.0, -1.0})
+    for (const double more : {0.25, 0.5}) {
+      BumpTwoWays model(more);
+      model.measure(strength);
+      const Diagnosis d = diagnosed(model);
+      REQUIRE(d.verdict == bump_alone);
+      CHECK(d.doubtful() == (std::pow(1 + more, 1.96) > 2));
+    }
 }
 
 }  // namespace

@@ -8,9 +8,9 @@
 #include <set>
 
 #include "base/error.h"
+#include "evidence/diagnosis/cause_findings.h"
 #include "evidence/diagnosis/strength_interval.h"
 #include "evidence/explanations/explanations.h"
-#include "evidence/explanations/fitted_strength.h"
 #include "evidence/explanations/wide_secants.h"
 
 namespace formwright {
@@ -30,6 +30,8 @@ constexpr double inseparable_likeness = 0.9;
 constexpr const char* stays_unexplained = "Part of the misfit stays unexplained.";
 constexpr const char* nearly_as_likely = "Another explanation is nearly as likely.";
 constexpr const char* other_material = "The material would have to be far from what was measured before.";
+constexpr const char* simulations_disagree = "Equally good simulations find strengths that are far apart.";
+constexpr double max_interval = 2;    // times the strength, that its interval may reach
 constexpr double surprising = 3;      // prior standard deviations
 constexpr double max_refinement = 2;  // a factor of the fitted strength
 constexpr double max_worse = 1.25;    // the same of the held-out error
@@ -47,6 +49,7 @@ class Diagnostician {
     judge();
     const auto span = context_.span(0.98, 1, measuring_strengths);
     widen_by_other_simulations(result_, tried_, bag_, context_);
+    doubt_wide_intervals();
     for (CauseFinding& finding : result_.causes) keep_in_range(model_, finding);
     return std::move(result_);
   }
@@ -71,8 +74,8 @@ class Diagnostician {
 
   void judge() {
     const auto span = context_.span(0.9, 0.98, "Predicting the held-out data");
-    find_causes();
-    measure_noise_floor();
+    result_.causes = cause_findings(tried_, result_.base);
+    result_.noise_floor = noise_floor(model_, result_.noise, tried_.precisions());
     before_ = held_out(result_.base).errors;
     result_.unexplained_before = tried_.structure_left({});
     result_.extended = result_.base;
@@ -106,6 +109,7 @@ class Diagnostician {
     }
     if (explains_too_little) result_.reading = Reading::unknown;
     find_twins();
+    doubt_measurement();
     if (explains_too_little) fail({causes, {}, Failure::explains_too_little});
   }
 
@@ -198,7 +202,7 @@ class Diagnostician {
     for (const int cause : causes) {
       CauseFinding& finding = finding_of(cause);
       const double half = half_width(finding);
-      set_values(finding, result_.extended.u);
+      set_values(model_, result_.extended.u, finding);
       set_half_width(finding, half);
     }
   }
@@ -284,6 +288,15 @@ class Diagnostician {
     }
   }
 
+  /// What equally good simulations find several times as strong, or not at all, may be something else as well.
+  void doubt_wide_intervals() {
+    for (const int cause : result_.verdict) {
+      const CauseFinding& finding = finding_of(cause);
+      const double far = finding.strength < 0 ? -finding.low : finding.high;
+      if (far > max_interval * std::abs(finding.strength)) doubt(simulations_disagree);
+    }
+  }
+
   /// Far from one that was measured before, and what is beyond moves points by more than the simulation's own error:
   /// some parameters stand in for each other, and run far without doing anything.
   bool is_other_material(const Eigen::VectorXd& u) const {
@@ -297,11 +310,13 @@ class Diagnostician {
     return tried_.movement_by(base, beyond) > min_movement * model_.known_misfit();
   }
 
-  /// Of what was unexplained (its variance): by the structure that is left, or, where that is beyond what is
-  /// distinguished, by the error on held-out blocks above the noise.
+  /// Of what was unexplained (its variance): by the structure that is left, where there was more than the simulation
+  /// has by itself, or by the error on held-out blocks above the noise.
   double share_explained() const {
-    const double structure = result_.unexplained_after / std::max(result_.unexplained_before, 1e-12);
-    return std::max(1 - structure * structure, explained_on_held_out(result_.held_out));
+    const double held_out = explained_on_held_out(result_.held_out);
+    if (result_.unexplained_before <= model_.max_misfit_left()) return held_out;
+    const double left = result_.unexplained_after / result_.unexplained_before;
+    return std::max(1 - left * left, held_out);
   }
 
   bool explains_held_out(const HeldOutGain& gain) const {
@@ -342,55 +357,6 @@ class Diagnostician {
   const CauseFinding& finding_of(int cause) const { return finding_in(result_.causes, cause); }
   CauseFinding& finding_of(int cause) { return finding_in(result_.causes, cause); }
 
-  void set_values(CauseFinding& finding, const Eigen::VectorXd& u) const {
-    finding.values.clear();
-    for (const int p : model_.causes()[static_cast<std::size_t>(finding.cause)].parameters)
-      finding.values.push_back(model_.parameters()[static_cast<std::size_t>(p)].value(u[p]));
-    finding.strength =
-        finding.values.size() == 1
-            ? finding.values[0]
-            : Eigen::Map<const Eigen::VectorXd>(finding.values.data(), static_cast<Eigen::Index>(finding.values.size()))
-                  .norm();
-  }
-
-  void find_causes() {
-    const GramByStructure gram =
-        tried_.misfit().gram(residuals(model_, result_.base.predictions),
-                             side_by_side(tried_.sensitivities(), tried_.usual_sensitivities()));
-    const std::vector<double> like = tried_.likenesses();
-    double none = -std::numeric_limits<double>::infinity();
-    for (const Hypothesis& h : result_.hypotheses)
-      if (h.causes.empty()) none = std::max(none, h.log_evidence);
-    for (int cause = 0; cause < static_cast<int>(model_.causes().size()); ++cause) {
-      CauseFinding finding;
-      finding.cause = cause;
-      finding.likeness = like[static_cast<std::size_t>(cause)];
-      finding.min_visible_strength = formwright::min_visible_strength(
-          model_, gram, tried_.nearest_size(model_.known_misfit()), tried_.columns(), cause);
-      const Hypothesis* at = nullptr;
-      for (const Hypothesis& h : result_.hypotheses) {
-        if (std::find(h.causes.begin(), h.causes.end(), cause) == h.causes.end()) continue;
-        if (at == nullptr) at = &h;
-      }
-      finding.log_evidence = at->log_evidence - none;
-      if (!tried_.is_refitted(at->causes)) {
-        // Far behind the others: where the linearised model has it.
-        set_values(finding, at->u);
-        finding.low = finding.high = finding.strength;
-        result_.causes.push_back(finding);
-        continue;
-      }
-      finding.fitted = true;
-      const FittedStrength fitted = fitted_strength(model_, tried_, at->causes, cause, at->structure);
-      finding.values = fitted.values;
-      finding.strength = fitted.strength;
-      finding.noise_deviation = fitted.noise_deviation;
-      finding.low = finding.strength - normal_quantile * fitted.deviation;
-      finding.high = finding.strength + normal_quantile * fitted.deviation;
-      result_.causes.push_back(finding);
-    }
-  }
-
   /// Causes that do the same as a named one as far as these data go. Where something stays unexplained, or another mesh
   /// could turn the balance, probabilities do not separate such causes: what the simulation gets wrong decides between
   /// them.
@@ -416,6 +382,20 @@ class Diagnostician {
       }
   }
 
+  /// Any scanner out of order may do nearly the same, though no cause of the list that does is as likely.
+  void doubt_measurement() {
+    if (result_.verdict.size() != 1) return;
+    const auto named = static_cast<std::size_t>(result_.verdict.front());
+    if (model_.causes()[named].fault_of == FaultOf::measurement) return;  // then it is one
+    const auto distorted = distorted_measurement(model_, tried_.misfit(), tried_.linear_models(), result_.structure);
+    if (!distorted || distorted->similarity[named] <= inseparable_likeness) return;
+    double log_evidence = -std::numeric_limits<double>::infinity();
+    for (const Hypothesis& h : result_.hypotheses)
+      if (h.causes == result_.verdict) log_evidence = std::max(log_evidence, h.log_evidence);
+    if (log_evidence - distorted->log_evidence < model_.mesh_error())
+      doubt("A scan that is stretched, skewed or turned in some other way would look nearly the same.");
+  }
+
   void measure_structure() {
     result_.structure_before.clear();
     result_.structure_after.clear();
@@ -426,19 +406,6 @@ class Diagnostician {
       result_.structure_before.push_back(test_structure(model_.measurements()[object], left[object], weights));
       result_.structure_after.push_back(test_structure(model_.measurements()[object], left_after[object], weights));
     }
-  }
-
-  void measure_noise_floor() {
-    double sum = 0, count = 0;
-    for (std::size_t object = 0; object < tried_.precisions().size(); ++object) {
-      if (!model_.measurements()[object].is_place()) continue;
-      const double d = static_cast<double>(model_.measurements()[object].measured.cols());
-      // Mean length of a d-dimensional Gaussian.
-      const double per_sigma = std::sqrt(2.0) * std::exp(std::lgamma(0.5 * (d + 1)) - std::lgamma(0.5 * d));
-      for (const double w : mean_weights(tried_.precisions()[object]))
-        if (w > 0) sum += per_sigma * result_.noise[object].sigma, count += 1;
-    }
-    result_.noise_floor = count > 0 ? sum / count : 0;
   }
 
   SimulationBag& bag_;

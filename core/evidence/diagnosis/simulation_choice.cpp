@@ -8,15 +8,17 @@
 #include "base/error.h"
 #include "evidence/calibration.h"
 #include "evidence/fit/hypotheses.h"
+#include "evidence/fit/usual_strengths.h"
 
 namespace formwright {
 namespace {
 
 constexpr const char* stage = "Choosing the simulation";
 constexpr FitOptions choosing_fit{7, 0.01, false};
-constexpr double min_gain = 20;    // of log evidence: a finer mesh alone moves it by about as much
-constexpr double min_promise = 0;  // of log evidence, of one look: a fit gains more
-constexpr int usual_rounds = 2;    // how often one is added at most, for the progress
+constexpr FitOptions far_fit{15, 0.005, true};  // an extension must not win by going on from where this one stops
+constexpr double min_gain = 20;                 // of log evidence: a finer mesh alone moves it by about as much
+constexpr double min_promise = 0;               // of log evidence, of one look: a fit gains more
+constexpr int usual_rounds = 2;                 // how often one is added at most, for the progress
 
 /// The nominal material, `before`'s, and such as differ from the nominal one in one parameter. What an extension brings
 /// begins at its usual strength.
@@ -191,9 +193,66 @@ class Choosing {
     });
     best_.with_causes = part(
         [&] { return fit_parameters(bag, with_causes(model_, softness_, best_.alone, causes_), context_, stage); });
+    if (const auto strong = strong_cause_instead_of(best_.alone.value, bag, *mean_distance_objective(model_, softness_),
+                                                    context_, stage))
+      begin_at(*strong, bag);
     best_.weights = weights_about(model_, best_.with_causes.predictions);
     choice_.simulations = bag.simulations();
     return true;
+  }
+
+  /// With all causes, from where `strong` alone leads; kept where it is nearer.
+  void begin_at(const StrongCause& strong, SimulationBag& bag) {
+    try {
+      FitProblem with_all = with_causes(model_, softness_, best_.alone, causes_);
+      const ParameterFit led = fit_parameters(
+          bag, {with_all.objective, model_.base_and({strong.cause}), {strong.u}, {}, far_fit}, context_, stage);
+      with_all.starts = {led.u};
+      with_all.known = sensitivities_of(with_all.free, side_by_side(led.sensitivities, with_all.known),
+                                        joined(led.free, with_all.free));
+      ParameterFit fit = fit_parameters(bag, std::move(with_all), context_, stage);
+      if (fit.value >= best_.with_causes.value) return;
+      best_.with_causes = std::move(fit);
+      strong_cause_ = true;
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::could_not_solve) throw;
+    }
+  }
+
+  /// With all causes, from where the extension is calibrated or, where a strong cause was found without it and that is
+  /// nearer, from there.
+  FitProblem extended_with_causes(SimulationBag& bag, const ParameterFit& alone) {
+    const ForwardModel& model = bag.model();
+    FitProblem problem = with_causes(model, softness_, alone, causes_);
+    if (!strong_cause_) return problem;
+    std::vector<Eigen::VectorXd> starts(2, best_.with_causes.u);
+    for (const int p : model.base_parameters())
+      if (is_new(p)) starts[1][p] = model.parameters()[static_cast<std::size_t>(p)].prior_sd;
+    const auto made = bag.run(starts, context_, stage);
+    double lowest = alone.value;
+    for (std::size_t i = 0; i < starts.size(); ++i) {
+      if (!made[i]) continue;
+      const double value = problem.objective->value(residuals(model, *made[i]), starts[i]);
+      if (!(value < lowest)) continue;
+      lowest = value;
+      problem.starts = {starts[i]};
+      problem.known = sensitivities_of(problem.free, side_by_side(best_.with_causes.sensitivities, alone.sensitivities),
+                                       joined(best_.with_causes.free, alone.free));
+    }
+    return problem;
+  }
+
+  bool is_new(int base_parameter) const {
+    const std::vector<int>& before = best_.alone.free;
+    return std::find(before.begin(), before.end(), base_parameter) == before.end();
+  }
+
+  /// Not where all it has to fit came out as nothing: that is the simulation without it, fitted on.
+  bool brings_something(const ForwardModel& extended, const ParameterFit& fit) const {
+    const std::vector<int> base = extended.base_parameters();
+    const auto nothing = [&](int p) { return !is_new(p) || fit.u[p] == 0; };
+    return std::none_of(base.begin(), base.end(), [&](int p) { return is_new(p); }) ||
+           !std::all_of(base.begin(), base.end(), nothing);
   }
 
   /// A fit has shown that it gains little, whatever one look promises.
@@ -236,7 +295,7 @@ class Choosing {
     auto fits = part([&] { return fitted(bags, std::move(problems), context_); });
     problems.assign(extensions.size(), std::nullopt);
     for (std::size_t i = 0; i < extensions.size(); ++i)
-      if (fits[i]) problems[i] = with_causes(*extensions[i].model, softness_, *fits[i], causes_);
+      if (fits[i]) problems[i] = extended_with_causes(*bags[i], *fits[i]);
     auto fits_with_causes = part([&] { return fitted(bags, std::move(problems), context_); });
     const double error_before = mean_error(*best_.model, best_.alone);
     std::optional<std::size_t> leader;
@@ -246,7 +305,7 @@ class Choosing {
       choice_.simulations += bags[i]->simulations();
       if (!fits_with_causes[i]) continue;
       const double gain = log_evidence_gain(best_, *extensions[i].model, *fits_with_causes[i]);
-      if (gain >= leading) {
+      if (gain >= leading && brings_something(*extensions[i].model, *fits_with_causes[i])) {
         leading = gain;
         leader = i;
         leading_place = choice_.tried.size();
@@ -277,6 +336,7 @@ class Choosing {
   double done_ = 0, softness_ = 0;
   Calibrated best_;
   FreeCauses causes_;
+  bool strong_cause_ = false;  // best_.with_causes is far from best_.alone
   SimulationChoice choice_;
 };
 

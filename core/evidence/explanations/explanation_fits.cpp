@@ -5,6 +5,7 @@
 #include <set>
 
 #include "evidence/explanations/explanations.h"
+#include "evidence/fit/usual_strengths.h"
 
 namespace formwright {
 namespace {
@@ -12,8 +13,7 @@ namespace {
 constexpr double linear_error = 150;  // of log evidence: linear models, and fits after two steps, err by less
 /// Times that: about zero, linear models of a cause of one sign say little.
 constexpr double one_sided_error = 2;
-constexpr int judged_after = 2;                    // steps
-constexpr double usual_multiples[] = {0.5, 1, 2};  // of a usual strength, to start from
+constexpr int judged_after = 2;  // steps
 constexpr FitOptions polishing_fit{8, 0.01, true}, renewing_fit{6, 0.01, true};
 
 }  // namespace
@@ -54,41 +54,22 @@ FitProblem Explanations::problem_from_base(const std::vector<int>& causes, const
                  guess != nullptr ? guess->sensitivities : sensitivities_of(free, sensitivities_, columns_), quick_fit);
 }
 
-bool Explanations::has_one_sign(const std::vector<int>& causes) const {
-  for (const int cause : causes)
-    for (const int p : model_.causes()[static_cast<std::size_t>(cause)].parameters)
-      if (model_.parameters()[static_cast<std::size_t>(p)].one_sided()) return true;
-  return false;
-}
-
 bool Explanations::cannot_lead(const std::vector<int>& causes) const {
   if (causes.empty() || pairs_) return false;
   const double linear = std::max(screened(causes, false).log_evidence, screened(causes, true).log_evidence);
   double fitted = -std::numeric_limits<double>::infinity();
   for (const Hypothesis& h : hypotheses_) fitted = std::max(fitted, h.log_evidence);
   const double leading = std::min(screened_.front().log_evidence, fitted);
-  return linear < leading - (has_one_sign(causes) ? one_sided_error : 1) * linear_error;
-}
-
-std::vector<Eigen::VectorXd> Explanations::strengths_to_start_from(const std::vector<int>& causes) const {
-  std::vector<Eigen::VectorXd> strengths;
-  for (const double multiple : usual_multiples) {
-    Eigen::VectorXd u = model_.nominal();
-    for (const int cause : causes)
-      for (const int p : model_.causes()[static_cast<std::size_t>(cause)].parameters)
-        u[p] = multiple * model_.parameters()[static_cast<std::size_t>(p)].prior_sd;
-    strengths.push_back(within_ranges(model_, u));
-  }
-  return strengths;
+  return linear < leading - (model_.has_one_sign(causes) ? one_sided_error : 1) * linear_error;
 }
 
 std::optional<FitProblem> Explanations::problem_from_nominal(const std::vector<int>& causes) {
   const std::vector<int> free = model_.base_and(causes);
   std::vector<Sensitivities> known = sensitivities_of(free, nominal_sensitivities_, columns_);
-  if (has_one_sign(causes)) {
+  if (model_.has_one_sign(causes)) {
     // At zero it has a derivative on one side only, and that says little: start at the best of some strengths, with the
     // secant from none to there.
-    FitProblem result = problem(causes, strengths_to_start_from(causes), {}, renewing_fit);
+    FitProblem result = problem(causes, strengths_to_start_from(model_, causes), {}, renewing_fit);
     Eigen::VectorXd start = result.starts.front();
     std::optional<Predictions> there;
     double lowest = std::numeric_limits<double>::infinity();
@@ -120,8 +101,8 @@ void Explanations::refit_singles(const std::vector<std::vector<int>>& explanatio
   if (explanations.empty()) return;
   std::vector<Eigen::VectorXd> usual;
   for (const std::vector<int>& causes : explanations)
-    if (has_one_sign(causes))
-      for (Eigen::VectorXd& u : strengths_to_start_from(causes)) usual.push_back(std::move(u));
+    if (model_.has_one_sign(causes))
+      for (Eigen::VectorXd& u : strengths_to_start_from(model_, causes)) usual.push_back(std::move(u));
   if (!usual.empty()) bag_.run(usual, context_, fitting_stage);
   std::vector<FitProblem> problems;
   for (const std::vector<int>& causes : explanations) problems.push_back(problem_from_base(causes, nullptr));

@@ -9,7 +9,6 @@
 #include "base/error.h"
 #include "evidence/explanations/likeness.h"
 #include "evidence/fit/free_fit.h"
-#include "evidence/fit/usual_strengths.h"
 
 namespace formwright {
 namespace {
@@ -76,9 +75,32 @@ void Explanations::screen() {
   for (std::size_t object = 0; object < movements_.size(); ++object)
     for (const Probing* probing : {&about_base, &about_nominal})
       for (const Eigen::MatrixXd& bend : probing->bends[object]) movements_[object].push_back(std::sqrt(0.5) * bend);
-  estimate_noise_about(freely_fitted(model_, base_.predictions, columns_, sensitivities_));
+  look_for_strong_cause();
+  estimate_noise_freely();
   screened_ = all_hypotheses(model_, pairs_);
   weigh_screened();
+}
+
+void Explanations::look_for_strong_cause() {
+  const auto objective = mean_distance_objective(model_, softness());
+  const double calibrated = objective->value(residuals(model_, base_.predictions), base_.u);
+  strong_ = strong_cause_instead_of(calibrated, bag_, *objective, context_, "Trying each effect");
+  if (!strong_) return;
+  strong_sensitivities_ = nominal_sensitivities_;
+  const std::vector<int>& own = model_.causes()[static_cast<std::size_t>(strong_->cause)].parameters;
+  if (own.size() == 1)  // the secant from none to there
+    for (std::size_t object = 0; object < strong_sensitivities_.size(); ++object)
+      strong_sensitivities_[object][static_cast<std::size_t>(own.front())] =
+          (strong_->predictions[object] - at_nominal_[object]) / strong_->u[own.front()];
+}
+
+void Explanations::estimate_noise_freely() {
+  const Predictions about_base = freely_fitted(model_, base_.predictions, columns_, sensitivities_);
+  estimate_noise_about(about_base);
+  if (!strong_) return;
+  const double noise = softness();
+  estimate_noise_about(freely_fitted(model_, strong_->predictions, columns_, strong_sensitivities_));
+  if (softness() > noise) estimate_noise_about(about_base);
 }
 
 std::vector<Sensitivities> Explanations::usual_sensitivities() {
@@ -93,11 +115,20 @@ std::vector<double> Explanations::likenesses() const {
 void Explanations::weigh_screened() {
   const GramByStructure about_base = misfit_->gram(residuals(model_, base_.predictions), sensitivities_);
   about_nominal_ = misfit_->gram(residuals(model_, at_nominal_), nominal_sensitivities_);
+  const GramByStructure about_strong =
+      strong_ ? misfit_->gram(residuals(model_, strong_->predictions), strong_sensitivities_) : GramByStructure{};
   for (Hypothesis& h : screened_) {
-    Hypothesis other = h;
-    weigh(model_, about_base, columns_, base_.u, h);
-    weigh(model_, about_nominal_, columns_, model_.nominal(), other);
-    if (other.log_evidence > h.log_evidence) h = std::move(other);
+    Hypothesis best = h;
+    weigh(model_, about_base, columns_, base_.u, best);
+    const auto weigh_about = [&](const GramByStructure& gram, const Eigen::VectorXd& u) {
+      Hypothesis other = h;
+      weigh(model_, gram, columns_, u, other);
+      if (other.log_evidence > best.log_evidence) best = std::move(other);
+    };
+    weigh_about(about_nominal_, model_.nominal());
+    if (strong_ && std::find(h.causes.begin(), h.causes.end(), strong_->cause) != h.causes.end())
+      weigh_about(about_strong, strong_->u);
+    h = std::move(best);
   }
   normalise(screened_);
 }
@@ -236,15 +267,22 @@ double Explanations::structure_left(const std::vector<int>& causes) const {
 double Explanations::softness() const { return largest_noise(model_, noise_); }
 
 double Explanations::movement(int cause, const Eigen::VectorXd& u) const {
-  return movement_by(model_.causes()[static_cast<std::size_t>(cause)].parameters, u);
+  const std::vector<int>& own = model_.causes()[static_cast<std::size_t>(cause)].parameters;
+  // The calibration that a strong cause has dragged off may lie where it does nothing.
+  return strong_ && strong_->cause == cause ? movement_by(own, u, strong_sensitivities_) : movement_by(own, u);
 }
 
 double Explanations::movement_by(const std::vector<int>& parameters, const Eigen::VectorXd& u) const {
+  return movement_by(parameters, u, sensitivities_);
+}
+
+double Explanations::movement_by(const std::vector<int>& parameters, const Eigen::VectorXd& u,
+                                 const std::vector<Sensitivities>& sensitivities) const {
   double squares = 0, count = 0;
-  for (std::size_t object = 0; object < sensitivities_.size(); ++object) {
+  for (std::size_t object = 0; object < sensitivities.size(); ++object) {
     const Measurement& m = model_.measurements()[object];
     Eigen::MatrixXd field = Eigen::MatrixXd::Zero(m.measured.rows(), m.measured.cols());
-    for (const int p : parameters) field += u[p] * sensitivities_[object][static_cast<std::size_t>(p)];
+    for (const int p : parameters) field += u[p] * sensitivities[object][static_cast<std::size_t>(p)];
     squares += field.squaredNorm();
     count += static_cast<double>(m.measured.rows());
   }

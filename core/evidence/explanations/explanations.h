@@ -5,8 +5,10 @@
 #include <optional>
 
 #include "evidence/fit/hypotheses.h"
+#include "evidence/explanations/distorted_measurement.h"
 #include "evidence/explanations/pair_search.h"
 #include "evidence/fit/structured_objective.h"
+#include "evidence/fit/usual_strengths.h"
 
 namespace formwright {
 
@@ -42,6 +44,7 @@ class Explanations {
   /// found nearly as likely, beginning from its fits. Fills everything. Throws Error{could_not_solve, cancelled}.
   void look_again(Explanations& coarse);
 
+  const ForwardModel& model() const { return model_; }
   const ParameterFit& base() const { return base_; }
   const std::vector<NoiseEstimate>& noise() const { return noise_; }
   /// How well each point is known, the simulation's own unreliability counted in.
@@ -54,6 +57,10 @@ class Explanations {
   /// what it does from there on to zero. Simulates these, on the coarser sheet where there is one. Throws
   /// Error{cancelled}.
   std::vector<Sensitivities> usual_sensitivities();
+  /// About the calibrated and about the set-up's own material.
+  std::vector<LinearModel> linear_models() const {
+    return {{base_.predictions, sensitivities_, base_.u}, {at_nominal_, nominal_sensitivities_, model_.nominal()}};
+  }
   /// likenesses() to what the calibrated model leaves.
   std::vector<double> likenesses() const;
   /// What may differ where `causes` and nothing else is at work.
@@ -87,10 +94,17 @@ class Explanations {
  private:
   /// Fills noise_, precisions_ and misfit_.
   void estimate_noise_about(const Predictions& predictions);
-  /// What the linearised model says of every explanation, about the calibrated or the set-up's own material, whichever
-  /// speaks better for it.
+  /// What the linearised model says of every explanation, about the calibrated or the set-up's own material, or about a
+  /// strong cause beside that, whichever speaks best for it.
   void weigh_screened();
+  /// Fills strong_ and what is known about it.
+  void look_for_strong_cause();
+  /// The noise that a linear model with every parameter leaves, about the calibrated model or, where that is less,
+  /// about the strong cause.
+  void estimate_noise_freely();
   const Hypothesis& screened(const std::vector<int>& causes, bool unknown) const;
+  double movement_by(const std::vector<int>& parameters, const Eigen::VectorXd& u,
+                     const std::vector<Sensitivities>& sensitivities) const;
   /// Fits base parameters and those of `causes` together, from the best of `starts`. No more structure is allowed than
   /// the right causes would leave: with as much as there is, what the causes should explain would cost nothing
   /// unexplained.
@@ -109,10 +123,6 @@ class Explanations {
   /// None or one cause each, from both materials. Each is weighed.
   void refit_singles(const std::vector<std::vector<int>>& explanations);
   void refit_pairs(const std::vector<PairGuess>& guesses);
-  /// The set-up's own parameters, with these causes half, once and twice as strong as they usually are.
-  std::vector<Eigen::VectorXd> strengths_to_start_from(const std::vector<int>& causes) const;
-  /// One of their parameters is never negative.
-  bool has_one_sign(const std::vector<int>& causes) const;
   /// Behind the linearised leader and the best fit so far by more than a linear model is wrong: not worth a fit, except
   /// as part of a pair.
   bool cannot_lead(const std::vector<int>& causes) const;
@@ -159,6 +169,8 @@ class Explanations {
   Predictions at_nominal_;
   std::vector<Sensitivities> nominal_sensitivities_;
   GramByStructure about_nominal_;
+  std::optional<StrongCause> strong_;  // much nearer to the data than the calibrated model
+  std::vector<Sensitivities> strong_sensitivities_;
   std::vector<Hypothesis> screened_, hypotheses_;
   std::vector<Refit> refits_;
   int cheap_simulations_ = 0;

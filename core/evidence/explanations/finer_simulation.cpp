@@ -138,6 +138,11 @@ void Explanations::look_again(Explanations& coarse) {
   columns_ = coarse.columns_;
   sensitivities_ = coarse.sensitivities_;
   nominal_sensitivities_ = coarse.nominal_sensitivities_;
+  if (coarse.strong_)
+    if (auto there = bag_.run(coarse.strong_->u, context_, looking)) {
+      strong_ = StrongCause{coarse.strong_->cause, coarse.strong_->u, std::move(*there)};
+      strong_sensitivities_ = coarse.strong_sensitivities_;
+    }
   discrepancies_ = coarse.discrepancies_;
   noise_ = coarse.noise_;
   {
@@ -165,7 +170,7 @@ void Explanations::look_again(Explanations& coarse) {
       sensitivities_[object][column] = discrepancy_sensitivities_[object][k];
     }
   }
-  estimate_noise_about(freely_fitted(model_, base_.predictions, columns_, sensitivities_));
+  estimate_noise_freely();
   screened_ = all_hypotheses(model_, pairs_);
   weigh_screened();
 

@@ -31,13 +31,23 @@ Eigen::VectorXd growing(const std::vector<double>& values) {
 
 }  // namespace
 
+std::vector<double> values_at(const ForwardModel& model, int cause, const Eigen::VectorXd& u) {
+  std::vector<double> values;
+  for (const int p : model.causes()[static_cast<std::size_t>(cause)].parameters)
+    values.push_back(model.parameters()[static_cast<std::size_t>(p)].value(u[p]));
+  return values;
+}
+
+double strength_of(const std::vector<double>& values) {
+  return values.size() == 1 ? values.front() : as_vector(values).norm();
+}
+
 FittedStrength fitted_strength(const ForwardModel& model, const Explanations& tried, const std::vector<int>& causes,
                                int cause, double structure) {
   const ParameterFit& fit = tried.refit_of(causes).fit;
   FittedStrength result;
-  for (const int p : model.causes()[static_cast<std::size_t>(cause)].parameters)
-    result.values.push_back(model.parameters()[static_cast<std::size_t>(p)].value(fit.u[p]));
-  result.strength = result.values.size() == 1 ? result.values.front() : as_vector(result.values).norm();
+  result.values = values_at(model, cause, fit.u);
+  result.strength = strength_of(result.values);
   const std::vector<Eigen::Index> places = places_of(model, fit, cause);
   const Eigen::VectorXd along = growing(result.values);
   const auto deviation = [&](std::size_t structure_size) {

@@ -10,9 +10,14 @@ namespace formwright {
 
 inline constexpr double normal_quantile = 1.96;  // 95 % of a Gaussian lie within as many standard deviations
 
+/// Of the parameters of `cause` at u.
+std::vector<double> values_at(const ForwardModel& model, int cause, const Eigen::VectorXd& u);
+/// The Euclidean norm of `values`; of one parameter its value, with its sign.
+double strength_of(const std::vector<double>& values);
+
 struct FittedStrength {
   std::vector<double> values;  // of the cause's parameters
-  double strength = 0;         // their Euclidean norm; of one parameter its value, with its sign
+  double strength = 0;         // strength_of() these
   double deviation = 0;        // standard deviation of the strength, with structure of the size that was found
   double noise_deviation = 0;  // the same by measuring noise alone
 };

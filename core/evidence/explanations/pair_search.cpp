@@ -11,12 +11,6 @@ namespace {
 
 constexpr std::size_t partners = 6;  // that the linear model likes best; causes of one sign are tried in any case
 
-bool one_sided(const ForwardModel& model, int cause) {
-  const std::vector<int>& own = model.causes()[static_cast<std::size_t>(cause)].parameters;
-  return std::any_of(own.begin(), own.end(),
-                     [&](int p) { return model.parameters()[static_cast<std::size_t>(p)].one_sided(); });
-}
-
 /// One anchor's search.
 class Neighbourhood {
  public:
@@ -48,7 +42,8 @@ class Neighbourhood {
     std::stable_sort(linear_.begin(), linear_.end(),
                      [](const Hypothesis& a, const Hypothesis& b) { return a.log_evidence > b.log_evidence; });
     std::size_t rank = 0;
-    std::erase_if(linear_, [&](const Hypothesis& h) { return rank++ >= partners && !one_sided(model_, partner(h)); });
+    std::erase_if(linear_,
+                  [&](const Hypothesis& h) { return rank++ >= partners && !model_.has_one_sign({partner(h)}); });
   }
 
   /// The pairs, fitted. The model has an answer at the anchor at least.
@@ -75,7 +70,7 @@ class Neighbourhood {
   FitProblem problem(const Hypothesis& linear) const {
     const std::vector<int> free = model_.base_and(linear.causes);
     std::vector<Eigen::VectorXd> starts{anchor_.u, towards(model_, free, anchor_.u, linear.u)};
-    if (one_sided(model_, partner(linear))) {
+    if (model_.has_one_sign({partner(linear)})) {
       starts.push_back(anchor_.u);
       for (const int p : model_.causes()[static_cast<std::size_t>(partner(linear))].parameters)
         starts.back()[p] = model_.parameters()[static_cast<std::size_t>(p)].prior_sd;

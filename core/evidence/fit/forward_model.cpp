@@ -29,6 +29,12 @@ bool ForwardModel::is_of(int parameter, const std::vector<int>& causes) const {
   });
 }
 
+bool ForwardModel::has_one_sign(const std::vector<int>& causes) const {
+  for (std::size_t p = 0; p < parameters().size(); ++p)
+    if (parameters()[p].one_sided() && is_of(static_cast<int>(p), causes)) return true;
+  return false;
+}
+
 std::vector<int> ForwardModel::parameters_with(ParameterRole role) const {
   std::vector<int> indices;
   for (std::size_t p = 0; p < parameters().size(); ++p)

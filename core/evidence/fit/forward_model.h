@@ -146,6 +146,8 @@ class ForwardModel {
   std::vector<int> parameters_with(ParameterRole role) const;
   /// `parameter` belongs to one of `causes`.
   bool is_of(int parameter, const std::vector<int>& causes) const;
+  /// One of the parameters of `causes` is never negative.
+  bool has_one_sign(const std::vector<int>& causes) const;
   /// How strong `cause` is at u: the length of its parameters' values.
   double strength(int cause, const Eigen::VectorXd& u) const;
   std::vector<int> base_parameters() const { return parameters_with(ParameterRole::base); }

@@ -85,6 +85,20 @@ HeldOutGain compare(const ForwardModel& model, const std::vector<std::size_t>& m
 
 }  // namespace
 
+double noise_floor(const ForwardModel& model, const std::vector<NoiseEstimate>& noise,
+                   const std::vector<Precisions>& precisions) {
+  double sum = 0, count = 0;
+  for (std::size_t m = 0; m < precisions.size(); ++m) {
+    if (!model.measurements()[m].is_place()) continue;
+    const double d = static_cast<double>(model.measurements()[m].measured.cols());
+    const double per_sigma = std::sqrt(2.0) * std::exp(std::lgamma(0.5 * (d + 1)) - std::lgamma(0.5 * d));
+    const auto counted = static_cast<double>((mean_weights(precisions[m]).array() > 0).count());
+    sum += counted * per_sigma * noise[m].sigma;
+    count += counted;
+  }
+  return count > 0 ? sum / count : 0;
+}
+
 HeldOutGain compare_distances(const ForwardModel& model, const std::vector<Eigen::VectorXd>& before,
                               const std::vector<Eigen::VectorXd>& after) {
   std::vector<std::size_t> places;

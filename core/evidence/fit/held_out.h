@@ -2,6 +2,7 @@
 #pragma once
 // Errors on data that were not used: spatial blocks left out in turn, and other objects. Neighbouring points know of
 // each other, so single points left out would prove nothing (Roberts et al. 2017).
+#include "evidence/fit/noise_model.h"
 #include "evidence/fit/structured_objective.h"
 
 namespace formwright {
@@ -23,6 +24,10 @@ int fold_of(int block);
 
 /// Per-point errors |residual|; points of weight 0 are -1.
 std::vector<Eigen::VectorXd> point_errors(const Predictions& residuals, const std::vector<Eigen::VectorXd>& weights);
+
+/// Mean distance that noise alone gives places with a weight: the mean length of a Gaussian of as many dimensions.
+double noise_floor(const ForwardModel& model, const std::vector<NoiseEstimate>& noise,
+                   const std::vector<Precisions>& precisions);
 
 /// Errors of places, in mm.
 HeldOutGain compare_distances(const ForwardModel& model, const std::vector<Eigen::VectorXd>& before,

@@ -129,6 +129,11 @@ Eigen::VectorXd FitInProgress::place_after(const Eigen::VectorXd& step) const {
   return u;
 }
 
+std::vector<Eigen::VectorXd> FitInProgress::wanted_later() const {
+  if (wanted_.empty() || asked_ != Asked::full_step) return {};
+  return {place_after(steps_.back())};
+}
+
 void FitInProgress::next_step() {
   wanted_.clear();
   promised_gain_ = 0;
@@ -218,19 +223,21 @@ void run_fits(const std::vector<SimulationBag*>& bags, std::vector<FitInProgress
     return sum / static_cast<double>(fits.size());
   };
   for (;;) {
-    std::vector<std::vector<Eigen::VectorXd>> points(bags.size());
+    std::vector<std::vector<Eigen::VectorXd>> points(bags.size()), later(bags.size());
     std::size_t waiting = 0;
     for (FitInProgress& fit : fits) {
       if (fit.iterations() > 0 && hopeless && hopeless(fit)) fit.stop();
       if (fit.wanted().empty()) continue;
       std::vector<Eigen::VectorXd>& own = points[bag_of(fit)];
       own.insert(own.end(), fit.wanted().begin(), fit.wanted().end());
+      const std::vector<Eigen::VectorXd> next = fit.wanted_later();
+      later[bag_of(fit)].insert(later[bag_of(fit)].end(), next.begin(), next.end());
       ++waiting;
     }
     if (waiting == 0) return;
     const double done = share(), step = 0.1 * static_cast<double>(waiting) / static_cast<double>(fits.size());
     const auto span = context.span(done, std::min(1.0, done + step), stage);
-    const auto made = SimulationBag::run_together(bags, points, context, stage);
+    const auto made = SimulationBag::run_together(bags, points, context, stage, later);
     std::vector<std::size_t> taken(bags.size(), 0);
     for (FitInProgress& fit : fits) {
       if (fit.wanted().empty()) continue;

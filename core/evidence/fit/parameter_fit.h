@@ -44,6 +44,8 @@ class FitInProgress {
   FitInProgress(const ForwardModel& model, FitProblem problem);
   /// Empty: finished.
   const std::vector<Eigen::VectorXd>& wanted() const { return wanted_; }
+  /// What it will want next where wanted() gains little: worth making by whoever is idle.
+  std::vector<Eigen::VectorXd> wanted_later() const;
   /// What the model predicts at wanted(), empty where it has no answer.
   void take(std::vector<std::optional<Predictions>> made);
   /// Where it stands is its result.

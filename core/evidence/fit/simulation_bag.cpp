@@ -42,7 +42,7 @@ struct SimulationBag::Missing {
   void make(std::size_t object, const Context& context) {
     try {
       for (const std::size_t m : groups[object]) made[m] = bag.model_.predict(static_cast<int>(m), u, context);
-      ++bag.simulations_;
+      ++simulations;
     } catch (const Error& error) {
       if (error.code() != ErrorCode::could_not_solve) throw;
       failed = true;
@@ -54,16 +54,25 @@ struct SimulationBag::Missing {
   std::vector<std::vector<std::size_t>> groups;
   Predictions made;
   std::atomic<bool> failed{false};
+  std::atomic<int> simulations{0};
 };
 
 std::vector<std::vector<std::optional<Predictions>>> SimulationBag::run_together(
     const std::vector<SimulationBag*>& bags, const std::vector<std::vector<Eigen::VectorXd>>& points, Context& context,
-    const std::string& stage) {
+    const std::string& stage, const std::vector<std::vector<Eigen::VectorXd>>& ahead) {
   std::vector<std::unique_ptr<Missing>> missing;
+  const auto ask = [&](SimulationBag& bag, const Eigen::VectorXd& u) {
+    if (bag.known_.emplace(key_of(u), std::nullopt).second) missing.push_back(std::make_unique<Missing>(bag, u));
+  };
   for (std::size_t b = 0; b < bags.size(); ++b)
-    for (const Eigen::VectorXd& u : points[b])
-      if (bags[b]->known_.emplace(key_of(u), std::nullopt).second)
-        missing.push_back(std::make_unique<Missing>(*bags[b], u));
+    for (const Eigen::VectorXd& u : points[b]) {
+      ask(*bags[b], u);
+      if (const auto early = bags[b]->made_ahead_.extract(key_of(u))) bags[b]->simulations_ += early.mapped();
+    }
+  const std::size_t asked_for = missing.size();
+  for (std::size_t b = 0; b < ahead.size(); ++b)
+    for (const Eigen::VectorXd& u : ahead[b])
+      if (missing.size() < static_cast<std::size_t>(thread_count())) ask(*bags[b], u);
   // One chunk for each object at each point: threads take the next as they get free.
   struct Job {
     Missing* point;
@@ -120,8 +129,12 @@ std::vector<std::vector<std::optional<Predictions>>> SimulationBag::run_together
     for (const auto& point : missing) point->bag.known_.erase(key_of(point->u));
     throw;
   }
-  for (const auto& point : missing)
-    if (!point->failed) point->bag.known_[key_of(point->u)] = std::move(point->made);
+  for (std::size_t i = 0; i < missing.size(); ++i) {
+    Missing& point = *missing[i];
+    if (!point.failed) point.bag.known_[key_of(point.u)] = std::move(point.made);
+    if (i < asked_for) point.bag.simulations_ += point.simulations;
+    else point.bag.made_ahead_[key_of(point.u)] = point.simulations;
+  }
   std::vector<std::vector<std::optional<Predictions>>> result(bags.size());
   for (std::size_t b = 0; b < bags.size(); ++b)
     for (const Eigen::VectorXd& u : points[b]) result[b].push_back(bags[b]->known_[key_of(u)]);

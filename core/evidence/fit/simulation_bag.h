@@ -25,12 +25,17 @@ class SimulationBag {
   std::optional<Predictions> run(const Eigen::VectorXd& point, Context& context, const std::string& stage);
 
   /// The same for several models at a time, each with points of its own, as one batch. The bags are different ones.
+  /// `ahead` (as many lists, or none): points that may be asked for next; they are made by threads that would else be
+  /// idle, and count as simulations once they are asked for.
   static std::vector<std::vector<std::optional<Predictions>>> run_together(
       const std::vector<SimulationBag*>& bags, const std::vector<std::vector<Eigen::VectorXd>>& points,
-      Context& context, const std::string& stage);
+      Context& context, const std::string& stage, const std::vector<std::vector<Eigen::VectorXd>>& ahead = {});
 
   /// Drops what is kept: a long search asks for nothing twice.
-  void forget() { known_.clear(); }
+  void forget() {
+    known_.clear();
+    made_ahead_.clear();
+  }
 
   const ForwardModel& model() const { return model_; }
   int simulations() const { return simulations_; }
@@ -40,6 +45,7 @@ class SimulationBag {
 
   const ForwardModel& model_;
   std::map<std::vector<double>, std::optional<Predictions>> known_;
+  std::map<std::vector<double>, int> made_ahead_;  // and not asked for yet; of how many objects
   std::atomic<int> simulations_{0};
 };
 

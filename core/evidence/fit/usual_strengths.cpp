@@ -2,6 +2,13 @@
 #include "evidence/fit/usual_strengths.h"
 
 namespace formwright {
+namespace {
+
+constexpr double usual_multiples[] = {0.5, 1, 2};
+constexpr double much_left = 10;  // known misfits
+constexpr double much_nearer = 0.5;
+
+}  // namespace
 
 std::vector<Sensitivities> at_usual_strengths(SimulationBag& bag, const Predictions& at_nominal,
                                               std::vector<Sensitivities> sensitivities, Context& context,
@@ -26,6 +33,44 @@ std::vector<Sensitivities> at_usual_strengths(SimulationBag& bag, const Predicti
           ((*predictions[i])[object] - at_nominal[object]) / (points[i][p] - model.nominal()[p]);
   }
   return sensitivities;
+}
+
+std::vector<Eigen::VectorXd> strengths_to_start_from(const ForwardModel& model, const std::vector<int>& causes) {
+  std::vector<Eigen::VectorXd> strengths;
+  for (const double multiple : usual_multiples) {
+    Eigen::VectorXd u = model.nominal();
+    for (const int cause : causes)
+      for (const int p : model.causes()[static_cast<std::size_t>(cause)].parameters)
+        u[p] = multiple * model.parameters()[static_cast<std::size_t>(p)].prior_sd;
+    strengths.push_back(within_ranges(model, u));
+  }
+  return strengths;
+}
+
+std::optional<StrongCause> strong_cause_instead_of(double calibrated, SimulationBag& bag, const FitObjective& objective,
+                                                   Context& context, const std::string& stage) {
+  const ForwardModel& model = bag.model();
+  if (calibrated < much_left * model.known_misfit()) return std::nullopt;
+  std::vector<Eigen::VectorXd> points;
+  std::vector<int> cause_at;
+  for (int cause = 0; cause < static_cast<int>(model.causes().size()); ++cause) {
+    if (!model.has_one_sign({cause})) continue;
+    for (Eigen::VectorXd& u : strengths_to_start_from(model, {cause})) {
+      points.push_back(std::move(u));
+      cause_at.push_back(cause);
+    }
+  }
+  const auto made = bag.run(points, context, stage);
+  std::optional<StrongCause> nearest;
+  double lowest = much_nearer * calibrated;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!made[i]) continue;
+    const double value = objective.value(residuals(model, *made[i]), points[i]);
+    if (!(value < lowest)) continue;
+    lowest = value;
+    nearest = StrongCause{cause_at[i], points[i], *made[i]};
+  }
+  return nearest;
 }
 
 }  // namespace formwright

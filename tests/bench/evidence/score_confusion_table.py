@@ -112,7 +112,7 @@ def baselines(cases, clean):
         fall = statistics.median(1 - trial[3] / trial[2] for _, trial in tried)
         better = [t for t in tried if t[1][3] < t[1][2]]
         print(f"\n*A discrepancy field and no causes*: on the blocks that were left out, the named cause and the field together predict better than the field alone in {share(better, cases)} of all cases. "
-              f"Their error is {100 * fall:.0f} % lower there (median). In the others no cause is named, and both are the same; by versions before 23 no cause is named that fails this comparison, by 23 only in doubt. "
+              f"Their error is {100 * fall:.0f} % lower there (median). In the others no cause is named, and both are the same; by versions before 23 no cause is named that fails this comparison, by later ones only in doubt. "
               "On another object a field has nothing to say: its error there is that of the calibrated simulation.")
 
 

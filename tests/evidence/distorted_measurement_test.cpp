@@ -110,7 +110,7 @@ TEST_CASE("DistortedMeasurement.ItsEvidenceIsThatOfTwelveNumbers") {
   Eigen::MatrixXd skewed = formed;
   skewed.col(0) += 0.01 * formed.col(1) + Eigen::VectorXd::Constant(600, 0.3);
   model.scan(skewed);
-  // Any map fits as well as none does a clean scan; what it costs to find it differs by its priors alone.
+  // The map fits both alike: they differ by how likely its numbers are beforehand.
   CHECK_THAT(distortion_in(model).log_evidence, WithinAbs(clean, 3));
 }
 

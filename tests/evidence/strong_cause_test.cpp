@@ -54,7 +54,7 @@ TEST_CASE("StrongCause.IsTheNearestOfSomeStrengthsWhereItIsMuchNearer") {
 class DraggedToy : public ToyModel {
  public:
   explicit DraggedToy(bool simulates_sag) : ToyModel(500) {
-    if (!simulates_sag) with_sag_ = std::make_unique<const DraggedToy>(true);
+    if (!simulates_sag) with_sag_ = std::make_unique<DraggedToy>(true);
     sags_ = simulates_sag;
   }
   double known_misfit() const override { return 0.008; }
@@ -71,7 +71,7 @@ class DraggedToy : public ToyModel {
   }
   void measure_ripple(double strength, unsigned seed) {
     measure(rippled(*this, strength), 0.05, seed);
-    if (with_sag_) const_cast<DraggedToy&>(*with_sag_).measurement() = measurement();
+    if (with_sag_) with_sag_->measurement() = measurement();
   }
   std::vector<SimulationExtension> extensions() const override {
     if (!with_sag_) return {};
@@ -82,7 +82,7 @@ class DraggedToy : public ToyModel {
   const Eigen::MatrixX2d& measurement_place() const { return measurements().front().place; }
   Eigen::ArrayXd sag() const { return 0.3 * (std::numbers::pi * measurement_place().col(0).array()).sin(); }
   bool sags_ = false;
-  std::unique_ptr<const DraggedToy> with_sag_;
+  std::unique_ptr<DraggedToy> with_sag_;
 };
 
 TEST_CASE("StrongCause.IsNotTakenForAnExtensionOfTheSimulation") {

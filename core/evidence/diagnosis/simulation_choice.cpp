@@ -247,7 +247,7 @@ class Choosing {
     return std::find(before.begin(), before.end(), base_parameter) == before.end();
   }
 
-  /// Not where all it has to fit came out as nothing: that is the simulation without it, fitted on.
+  /// Not where all it has to fit came out as nothing: that is the simulation without it, after more steps.
   bool brings_something(const ForwardModel& extended, const ParameterFit& fit) const {
     const std::vector<int> base = extended.base_parameters();
     const auto nothing = [&](int p) { return !is_new(p) || fit.u[p] == 0; };
